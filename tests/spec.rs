@@ -81,8 +81,9 @@ fn check(script: &str, files: &Memory) -> Result<(), String> {
                 }
                 Some(Expected::Report { severity, code, words }) => {
                     let fits = |d: &Diagnostic| {
-                        let on_line =
-                            |l: &Label| l.file == FileId(0) && cx.sources.place(l.file, l.span.start).is_some_and(|p| p.line == i + 1);
+                        let on_line = |l: &Label| {
+                            l.file == FileId(0) && cx.program.sources.place(l.file, l.span.start).is_some_and(|p| p.line == i + 1)
+                        };
                         d.severity() == severity && d.code.0 == code && d.message.contains(&words) && d.labels.iter().any(on_line)
                     };
                     match (0..found.len()).find(|k| !met[*k] && fits(&found[*k])) {
@@ -95,7 +96,7 @@ fn check(script: &str, files: &Memory) -> Result<(), String> {
         let unmet: Vec<Diagnostic> =
             found.iter().zip(&met).filter(|(d, met)| !**met && d.severity() != Severity::Note).map(|(d, _)| d.clone()).collect();
         if !unmet.is_empty() {
-            wrong.push(format!("nobody expects\n{}", render_all(&unmet, &cx.sources, false)));
+            wrong.push(format!("nobody expects\n{}", render_all(&unmet, &cx.program.sources, false)));
         }
         if wrong.is_empty() { Ok(()) } else { Err(wrong.join("\n")) }
     })

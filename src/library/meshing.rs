@@ -10,7 +10,7 @@ use super::plan::MeshPlan;
 use crate::base::fault::Fault;
 use crate::base::job::Job;
 use crate::base::origin::Origin;
-use crate::lang::eval::context::Halt;
+use crate::lang::eval::halt::Halt;
 use crate::lang::values::units::{degrees, number_text};
 use crate::mesh;
 use crate::mesh::request::plan::{GroupRequest, Place, Refine};

@@ -2,7 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::lang::eval::context::{Cx, Sound};
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::pipeline::Sound;
 use crate::lang::eval::scene::side_of;
 use crate::lang::run::symbols::Symbol;
 use crate::lang::syntax::ast::Keyword;

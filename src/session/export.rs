@@ -16,7 +16,8 @@ use crate::io::tables::json::{self, Json};
 use crate::io::tables::table::{Cell, Table};
 use crate::io::tables::table_write;
 use crate::io::{Deck, Encoding, FileError, Files, Loss, Options, extension, format_for};
-use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::halt::Halt;
 use crate::lang::eval::scene::side_of;
 use crate::lang::values::plans::ExportSpec;
 use crate::lang::values::value::{Dim, MeshValue, ModuleId, Record, Value};
@@ -305,7 +306,7 @@ fn records(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<Written,
 
 fn json_record(cx: &Cx, record: &Record) -> Json {
     let fields = record.keys.iter().zip(&record.values);
-    Json::Record(fields.map(|(key, value)| (cx.names.text(*key).to_owned(), json_value(cx, value))).collect())
+    Json::Record(fields.map(|(key, value)| (cx.program.names.text(*key).to_owned(), json_value(cx, value))).collect())
 }
 
 /// Numbers in model units and degrees, as in the report.
@@ -340,7 +341,7 @@ fn csv_table(cx: &Cx, rows: &[std::sync::Arc<Record>]) -> Table {
     let cells = |row: &std::sync::Arc<Record>| keys.iter().map(|key| cell(row.get(*key))).collect();
     Table {
         title: Vec::new(),
-        header: Some(keys.iter().map(|key| cx.names.text(*key).to_owned()).collect()),
+        header: Some(keys.iter().map(|key| cx.program.names.text(*key).to_owned()).collect()),
         rows: rows.iter().map(cells).collect(),
         lines: Vec::new(),
     }

@@ -74,10 +74,10 @@ fn read(cx: &mut Cx) -> Named {
         let Some(Value::Record(record)) = cx.value_of(&import) else { continue };
         for (key, value) in record.keys.iter().zip(&record.values) {
             if let Value::Curve(chain) = value {
-                put(chain, cx.names.text(*key).to_owned());
+                put(chain, cx.program.names.text(*key).to_owned());
             }
         }
-        let list = record.keys.iter().position(|key| cx.names.text(*key) == "curves");
+        let list = record.keys.iter().position(|key| cx.program.names.text(*key) == "curves");
         let Some(Value::List(items)) = list.and_then(|k| record.values.get(k)) else { continue };
         for (k, item) in items.iter().enumerate() {
             if let Value::Curve(chain) = item {
@@ -133,7 +133,7 @@ pub(super) fn add(spec: &PictureSpec, things: &Things, stage: &Stage, drawing: &
 
 /// The declared point at a place.
 fn declared(stage: &Stage, at: DVec3) -> Option<String> {
-    let near = |p: &&crate::lang::eval::context::Declared<DVec3>| stage.tolerance.same_point(p.value, at);
+    let near = |p: &&crate::lang::eval::pipeline::Declared<DVec3>| stage.tolerance.same_point(p.value, at);
     stage.sound.parts.points.iter().find(near).map(|p| p.name.to_string())
 }
 

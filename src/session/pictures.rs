@@ -24,7 +24,9 @@ use crate::draw::{Kind, Line, Mark, Scene as Drawing, faces, lines, meshes};
 use crate::geometry::Curve;
 use crate::io::{FileError, Files, Sort, ending_for};
 use crate::lang::diag::diagnostic::Diagnostic;
-use crate::lang::eval::context::{Cx, Halt, Sound};
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::halt::Halt;
+use crate::lang::eval::pipeline::Sound;
 use crate::lang::eval::scene::Scene;
 use crate::lang::values::plans::{PictureSpec, Show};
 use crate::lang::values::value::{Home, MeshValue, ModuleId, Value};
@@ -393,7 +395,7 @@ fn values_of(cx: &mut Cx, names: &[String], asked: &mut usize) -> Result<Vec<(Va
             format!("{ASKED}{}", *asked - 1)
         });
         let Some(value) = cx.value_of(hidden.as_ref().unwrap_or(name)) else {
-            let failed = hidden.is_some() || cx.names.find(name).is_some();
+            let failed = hidden.is_some() || cx.program.names.find(name).is_some();
             let text = if failed { format!("`{name}` has no value to draw") } else { format!("`{name}` is not defined") };
             return Err(Diagnostic::without_place("E201", text).help("a name that the script declares, or `network`").into());
         };

@@ -20,8 +20,10 @@ use crate::base::work;
 use crate::lang::declare::params::TableRow;
 use crate::lang::diag::diagnostic::{Diagnostic, Sources};
 use crate::lang::diag::render::render_all;
-use crate::lang::eval::context::{Cx, Halt, Sound};
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::halt::Halt;
 use crate::lang::eval::memory::Memory;
+use crate::lang::eval::pipeline::Sound;
 use crate::lang::run::phases::Entry;
 use crate::lang::values::plans::PictureSpec;
 use crate::lang::values::value::{ModuleId, Value};
@@ -161,7 +163,7 @@ struct Run<'r> {
 impl<'r> Run<'r> {
     fn new(task: &'r Task<'r>, mut cx: Cx<'r>, disk: &'r dyn Store, stages: &'r Stages<'r>) -> Self {
         let report = Report { loft: VERSION, model: task.name.to_owned(), ..Report::default() };
-        cx.whole = task.full;
+        cx.sink.whole = task.full;
         Self {
             cx,
             stages,
@@ -287,7 +289,7 @@ impl<'r> Run<'r> {
             self.cx.say(fault);
         }
         self.report.reports = self.cx.reports().iter().map(collect::table).collect();
-        self.report.checks = self.cx.checks().iter().map(|check| collect::check(check, &self.cx.sources)).collect();
+        self.report.checks = self.cx.checks().iter().map(|check| collect::check(check, &self.cx.program.sources)).collect();
     }
 
     /// Rows of network and surface model, where something failed of what is sound; gives the box of all, where it is asked for.
@@ -451,7 +453,7 @@ impl<'r> Run<'r> {
     /// Gives outputs their names when all is well, and puts the outcome together.
     fn finish(mut self, said: Option<Diagnostic>) -> (Outcome, Memory) {
         let interrupted = self.cx.job.go_on().is_err();
-        self.report.unmade = self.cx.unmade().iter().map(|unmade| collect::unmade(unmade, &self.cx.sources)).collect();
+        self.report.unmade = self.cx.unmade().iter().map(|unmade| collect::unmade(unmade, &self.cx.program.sources)).collect();
         let mut diagnostics = self.cx.finish();
         let asked = self.task.picture.is_some_and(|wanted| picture_paths::about_paths(&mut diagnostics, wanted, self.task.text.len()));
         diagnostics.extend(said.or(self.said.take()).filter(|_| !asked));
@@ -479,12 +481,12 @@ impl<'r> Run<'r> {
             self.report.unwritten = self.unwritten();
         }
         self.report.ok = ok;
-        self.report.diagnostics = diagnostics.iter().flat_map(|d| collect::diagnostic(d, &self.cx.sources)).collect();
+        self.report.diagnostics = diagnostics.iter().flat_map(|d| collect::diagnostic(d, &self.cx.program.sources)).collect();
         let tolerance = self.cx.tolerance_used().map(|t| t.point);
         let timings = &mut self.report.timings;
         timings.mesh = self.stages.mesh_seconds();
         timings.evaluate = (timings.evaluate - timings.mesh).max(0.0);
-        let sources = std::mem::take(&mut self.cx.sources);
+        let sources = std::mem::take(&mut self.cx.program.sources);
         let outcome = Outcome {
             report: self.report,
             meshes: self.meshes,

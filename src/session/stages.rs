@@ -9,7 +9,9 @@ use crate::base::job::Job;
 use crate::base::limits::{REPORTS_OF_A_KIND, REPORTS_TOLD, STAGE_WORK, WORK_OF_A_CURVE, WORK_OF_A_SURFACE};
 use crate::base::tolerance::Tolerance;
 use crate::base::work::{Budget, Exceeded};
-use crate::lang::eval::context::{Cx, Halt, Parts, Pipeline, Snapping, Turn};
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::halt::Halt;
+use crate::lang::eval::pipeline::{Parts, Pipeline, Snapping, Turn};
 use crate::lang::eval::scene::Scene;
 use crate::lang::values::plans::MeshSpec;
 use crate::lang::values::value::ModuleId;
@@ -179,7 +181,7 @@ impl Pipeline for Stages<'_> {
 
     fn model(&self, cx: &mut Cx, module: ModuleId, (parts, network): (&Parts, Arc<Network>)) -> Result<Arc<Model>, Halt> {
         let tolerance = cx.tolerance()?;
-        let named = |s: &crate::lang::eval::context::Declared<crate::surface::Surface>| Named {
+        let named = |s: &crate::lang::eval::pipeline::Declared<crate::surface::Surface>| Named {
             name: s.name.to_string(),
             surface: s.value.clone(),
         };
@@ -274,7 +276,7 @@ fn say_all(cx: &mut Cx, sink: &[Fault]) {
         })
         .collect();
     let mut said = vec![0; kinds.len()];
-    let most = if cx.whole { REPORTS_TOLD } else { REPORTS_OF_A_KIND };
+    let most = if cx.sink.whole { REPORTS_TOLD } else { REPORTS_OF_A_KIND };
     for (fault, kind) in sink.iter().zip(kind_of) {
         said[kind] += 1;
         let rest = kinds[kind].1.saturating_sub(most);

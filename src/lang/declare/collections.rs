@@ -9,8 +9,9 @@ use crate::base::text::article;
 use crate::lang::declare::shares::Meshed;
 use crate::lang::diag::span::Span;
 use crate::lang::eval::coerce::flatten_into;
-use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::eval::context::Cx;
 use crate::lang::eval::faults::member_name;
+use crate::lang::eval::halt::Halt;
 use crate::lang::eval::later;
 use crate::lang::eval::machine::{Code, Gather};
 use crate::lang::eval::room::flat_len;
@@ -92,7 +93,7 @@ impl Cx<'_> {
         things: &[ExprId],
         (settings, clauses): (&[ast::Setting], &[MeshClause]),
     ) -> Result<Value, Halt> {
-        let name = bound(declaration).map(|b| self.names.text(b.name).to_owned()).unwrap_or_default();
+        let name = bound(declaration).map(|b| self.program.names.text(b.name).to_owned()).unwrap_or_default();
         let mut meshes: Vec<MeshSpec> = Vec::new();
         let base = self.machine.at(code.module).meshes.len();
         let keyword = declaration.keyword;
@@ -302,7 +303,8 @@ impl Cx<'_> {
                 Keyword::Picture | Keyword::Export => {
                     open.extend(part.things());
                     for key in ["curves", "points"] {
-                        let list = self.names.find(key).and_then(|key| if let Value::Record(r) = &value { r.get(key) } else { None });
+                        let list =
+                            self.program.names.find(key).and_then(|key| if let Value::Record(r) = &value { r.get(key) } else { None });
                         flatten_into(list.cloned().unwrap_or_else(|| Value::list(Vec::new())), &mut open);
                     }
                 }
@@ -343,7 +345,7 @@ impl Cx<'_> {
     ) -> Result<Vec<Resolved>, Halt> {
         let (mut out, mut gather) = (Vec::<Resolved>::with_capacity(settings.len()), Gather::default());
         for setting in settings {
-            let key = self.names.text(setting.key).to_owned();
+            let key = self.program.names.text(setting.key).to_owned();
             let Some(known) = table.iter().find(|s| s.key == key) else {
                 gather.take::<()>(Err(self.no_setting(code, (word, table), &key, setting.key_span)));
                 continue;
@@ -376,7 +378,7 @@ impl Cx<'_> {
             return Err(self.out_of_page(code, key, &value, id));
         }
         let Some((_, range)) = setting.range.iter().find(|(holds, _)| !holds(x)) else { return Ok(value) };
-        let found = if let Value::Number(q) = &value { units::told(*q, self.unit) } else { self.show(&value) };
+        let found = if let Value::Number(q) = &value { units::told(*q, self.program.unit) } else { self.show(&value) };
         Err(self.error(code, "E306", format!("`{key}` must be {range}, got {found}"), code.span(id), found).came_from(code).stop())
     }
 

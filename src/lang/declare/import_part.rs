@@ -11,7 +11,8 @@ use crate::io::cad::healing::{Repair, Rule};
 use crate::io::cad::part::{Group, Options, Part, Unusable};
 use crate::io::{iges, step};
 use crate::lang::declare::imports::File;
-use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::halt::Halt;
 use crate::lang::eval::stages::each_member;
 use crate::lang::syntax::ast::Keyword;
 use crate::lang::values::origins::{NO_MEMBER, Place};
@@ -37,7 +38,12 @@ impl Cx<'_> {
 
     fn cad_options(&self, file: &File) -> Options {
         let millimetres = |unit| units::convert(1.0, unit, MILLIMETRE, 1);
-        Options { model: millimetres(self.unit), unit: self.unit.name, file: file.unit.map(millimetres), origin: file.origin }
+        Options {
+            model: millimetres(self.program.unit),
+            unit: self.program.unit.name,
+            file: file.unit.map(millimetres),
+            origin: file.origin,
+        }
     }
 
     /// Lists in file order, then everything once more by its name in the file.
@@ -50,7 +56,7 @@ impl Cx<'_> {
         self.steps(part.points.len() + part.curves.len() + part.surfaces.len())?;
         let mut warnings = std::mem::take(&mut part.warnings);
         warnings.append(&mut part.build(file.origin, &tolerance));
-        if self.whole {
+        if self.sink.whole {
             let told = |repair: &Repair| Malformed::line(repair.line, repair.told(part.model_unit));
             // What is as exact as the file says is nothing to warn of.
             warnings.extend(part.repairs.iter().filter(|repair| repair.rule != Rule::Accuracy).map(told));
@@ -61,7 +67,7 @@ impl Cx<'_> {
         if !part.unusable.is_empty() {
             let faces = part.unusable.iter().map(|face| Malformed::line(face.line, format!("{}: {}", face.entity, face.cause))).collect();
             let (path, total, share) = (file.path.to_owned(), part.n_faces(), part.share_missing());
-            self.say(&FileFault::Unusable { of: file.origin, path, total, faces, share, whole: self.whole }.into());
+            self.say(&FileFault::Unusable { of: file.origin, path, total, faces, share, whole: self.sink.whole }.into());
         }
         Ok(value)
     }
@@ -114,7 +120,7 @@ impl Cx<'_> {
     }
 
     fn record_of_part(&mut self, fields: Vec<(&str, Value)>, part: PartValue) -> Value {
-        let (keys, values) = fields.into_iter().map(|(key, value)| (self.names.intern(key), value)).unzip::<_, _, Vec<_>, Vec<_>>();
+        let (keys, values) = fields.into_iter().map(|(key, value)| (self.program.names.intern(key), value)).unzip::<_, _, Vec<_>, Vec<_>>();
         Value::Record(Arc::new(Record { keys: Arc::new(keys), values, row: false, part: Some(Arc::new(part)) }))
     }
 }
@@ -146,12 +152,12 @@ impl Faces {
             let name: Arc<str> = layer.own.as_ref().unwrap_or(&layer.name).as_str().into();
             layer.surfaces.iter().for_each(|k| layers[*k].push(name.clone()));
         }
-        let place = cx.origins.place(file.origin);
+        let place = cx.program.origins.place(file.origin);
         for (k, ((item, built), (color, layers))) in part.surfaces.iter().zip(&part.built).zip(colors.into_iter().zip(layers)).enumerate() {
             let first = all.len();
             for surface in built {
                 let member = [all.len() as u32, NO_MEMBER];
-                let origin = place.map_or(file.origin, |place| cx.origins.add(Place { member, ..place }));
+                let origin = place.map_or(file.origin, |place| cx.program.origins.add(Place { member, ..place }));
                 all.push(surface.with_origin(origin));
                 let color = color.zip(item.color).map(|(name, rgb)| (name.into(), rgb));
                 said.push(Said {
@@ -176,7 +182,7 @@ impl Faces {
         }
         let file = PartFile {
             path: file.path.into(),
-            origin: place.map_or(file.origin, |place| cx.origins.add(Place { member: [NO_MEMBER; 2], expr: None, ..place })),
+            origin: place.map_or(file.origin, |place| cx.program.origins.add(Place { member: [NO_MEMBER; 2], expr: None, ..place })),
             module: cx.module(),
             said,
             bodies,
@@ -272,12 +278,12 @@ impl Faces {
 impl Cx<'_> {
     /// Red, green and blue of each colour of the imported files of a script, with the curves and surfaces that have it.
     pub fn colors(&self, module: ModuleId) -> Vec<([f64; 3], Vec<Value>)> {
-        let list = |record: &Record, key: &str| match self.names.find(key).and_then(|key| record.get(key)) {
+        let list = |record: &Record, key: &str| match self.program.names.find(key).and_then(|key| record.get(key)) {
             Some(Value::List(items)) => items.to_vec(),
             _ => Vec::new(),
         };
         let mut found = Vec::new();
-        each_member(self.machine.at(module), &self.names, &[Keyword::Import], &mut |_, _, _, _, value| {
+        each_member(self.machine.at(module), &self.program.names, &[Keyword::Import], &mut |_, _, _, _, value| {
             let Value::Record(part) = value else { return };
             for group in list(part, "colors") {
                 let Value::Record(group) = group else { continue };

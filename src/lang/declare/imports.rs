@@ -10,7 +10,8 @@ use crate::base::origin::Origin;
 use crate::io::tables::table::{Layout, Reading};
 use crate::io::{self, Cell, Json, Obj};
 use crate::lang::eval::bind::Signature;
-use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::halt::Halt;
 use crate::lang::eval::load::file_fault;
 use crate::lang::eval::machine::{Code, Gather};
 use crate::lang::syntax::ast::{Arg, ExprId};
@@ -112,7 +113,7 @@ impl Cx<'_> {
     }
 
     pub(crate) fn repaired(&mut self, file: &File, repairs: Vec<Malformed>) {
-        let said = if self.whole { repairs.len() } else { REPAIRS_SAID };
+        let said = if self.sink.whole { repairs.len() } else { REPAIRS_SAID };
         let more = repairs.len().saturating_sub(said);
         for mut at in repairs.into_iter().take(said) {
             if more > 0 && at.what.is_empty() {
@@ -134,14 +135,14 @@ impl Cx<'_> {
             Json::Text(t) => Value::Text(t.into()),
             Json::List(items) => Value::list(items.into_iter().map(|i| self.json(i)).collect()),
             Json::Record(fields) => {
-                let (keys, values) = fields.into_iter().map(|(k, v)| (self.names.intern(&k), self.json(v))).unzip();
+                let (keys, values) = fields.into_iter().map(|(k, v)| (self.program.names.intern(&k), self.json(v))).unzip();
                 Value::Record(Arc::new(Record { keys: Arc::new(keys), values, row: false, part: None }))
             }
         }
     }
 
     fn obj(&mut self, file: &File, mut obj: Obj) -> Value {
-        let scale = file.scale(self.unit);
+        let scale = file.scale(self.program.unit);
         let (mesh, mut repairs) = obj.mesh(stem(file.path));
         let mut skipped = std::mem::take(&mut obj.skipped);
         skipped.append(&mut repairs);
@@ -171,7 +172,7 @@ impl Cx<'_> {
     }
 
     fn imported_mesh(&mut self, file: &File, mut mesh: Mesh) -> Value {
-        let scale = file.scale(self.unit);
+        let scale = file.scale(self.program.unit);
         if scale != 1.0 {
             mesh.nodes.iter_mut().for_each(|p| *p *= scale);
         }
@@ -181,7 +182,7 @@ impl Cx<'_> {
 
     fn table_value(&mut self, file: &File, table: io::Table) -> Result<Value, Halt> {
         self.steps(table.rows.iter().map(Vec::len).sum())?;
-        let model = self.unit;
+        let model = self.program.unit;
         let number = |x: f64| match file.unit {
             Some(unit) => Value::quantity(units::convert(x, unit, model, 1), Dim::LENGTH),
             None => Value::number(x),
@@ -192,7 +193,7 @@ impl Cx<'_> {
             Cell::Text(t) => Value::Text(t.into()),
             Cell::None => Value::None,
         };
-        let keys = table.header.iter().flatten().map(|h| self.names.intern(h)).collect();
+        let keys = table.header.iter().flatten().map(|h| self.program.names.intern(h)).collect();
         let keys = Arc::new(keys);
         let has_header = table.header.is_some();
         let row = |cells: Vec<Cell>| {

@@ -1,7 +1,8 @@
 //! Declarations: what each keyword makes of its right side.
 
 use crate::base::origin::Origin;
-use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::halt::Halt;
 use crate::lang::eval::later::keyword_word;
 use crate::lang::eval::machine::{Code, Gather};
 use crate::lang::eval::room::LIST_COST;
@@ -65,7 +66,7 @@ impl Cx<'_> {
             let failed = made.is_err();
             out.extend(gather.take(made));
             // Many members with the same mistake are one mistake.
-            if failed && cx.sink.len() > 20 { Err(Halt::Failed) } else { Ok(()) }
+            if failed && cx.sink.reports.len() > 20 { Err(Halt::Failed) } else { Ok(()) }
         })?;
         gather.done().map(|()| Value::list(out))
     }
@@ -106,19 +107,19 @@ impl Cx<'_> {
 
     /// The origin that stands for a declaration or a member of it.
     pub(crate) fn own_origin(&mut self, code: Code<'_>, member: [u32; 2]) -> Origin {
-        self.origins.add(Place { module: code.module, declaration: code.declaration, member, expr: None, caller: Origin::NONE })
+        self.program.origins.add(Place { module: code.module, declaration: code.declaration, member, expr: None, caller: Origin::NONE })
     }
 
     /// Whether an entity was made by the right side itself, so that its origin is the declaration's already.
     fn is_own(&self, origin: Origin, code: Code<'_>, value: ExprId, member: [u32; 2]) -> bool {
         let own = Place { module: code.module, declaration: code.declaration, member, expr: Some(value), caller: Origin::NONE };
-        self.origins.place(origin) == Some(own)
+        self.program.origins.place(origin) == Some(own)
     }
 
     /// Names and types of a function; its body is looked at when it is called.
     fn check_fn(&mut self, code: Code<'_>, name: Name, params: &[FnParam], returns: Option<&TypeName>) -> Result<Value, Halt> {
         let mut gather = Gather::default();
-        let text = self.names.text(name).to_owned();
+        let text = self.program.names.text(name).to_owned();
         if std::builtins().any(|b| b.name == text) {
             let span = self.machine.at(code.module).script.declarations[code.declaration as usize].keyword_span;
             let span = bound(&self.machine.at(code.module).script.declarations[code.declaration as usize]).map_or(span, |b| b.span);
@@ -130,7 +131,7 @@ impl Cx<'_> {
                 gather.take(self.written_type(code, ty));
             }
             if let Some(before) = params[..i].iter().find(|p| p.bound.name == param.bound.name) {
-                let text = format!("`{}` is defined twice", self.names.text(param.bound.name));
+                let text = format!("`{}` is defined twice", self.program.names.text(param.bound.name));
                 let draft = self.error(code, "E202", text, param.bound.span, "again here").and(before.bound.span, "first here");
                 gather.take::<()>(Err(draft.stop()));
             }
@@ -143,7 +144,7 @@ impl Cx<'_> {
 
     /// A type as written.
     pub(crate) fn written_type(&mut self, code: Code<'_>, ty: &TypeName) -> Result<Ty, Halt> {
-        let text = self.names.text(ty.name).to_owned();
+        let text = self.program.names.text(ty.name).to_owned();
         if let Some(ty) = Ty::written(&text, ty.lists) {
             return Ok(ty);
         }

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use crate::base::origin::Origin;
 use crate::lang::declare::collections::{find, said, truth};
 use crate::lang::diag::diagnostic::Diagnostic;
-use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::halt::Halt;
 use crate::lang::eval::machine::{Code, Gather};
 use crate::lang::eval::operators::Comparison;
 use crate::lang::syntax::ast;
@@ -34,7 +35,7 @@ impl Cx<'_> {
                 })?;
                 for (result, failure) in done {
                     self.machine.at_mut(code.module).checks.push((code.declaration, result));
-                    self.sink.extend(failure);
+                    self.sink.reports.extend(failure);
                 }
             }
             Keyword::Report => {
@@ -105,7 +106,7 @@ impl Cx<'_> {
 
     /// The words of `element:`; those of a list written out have their own places.
     fn elements(&mut self, code: Code<'_>, written: &[ast::Setting], said: &Value, whole: Origin) -> Vec<(Arc<str>, Origin)> {
-        let setting = written.iter().find(|setting| self.names.text(setting.key) == "element");
+        let setting = written.iter().find(|setting| self.program.names.text(setting.key) == "element");
         let items: &[ExprId] = match setting.map(|setting| code.expr(setting.value)) {
             Some(Expr::List(items)) => items,
             _ => &[],

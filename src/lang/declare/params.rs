@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use crate::lang::diag::diagnostic::{Diagnostic, FileId};
-use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::halt::Halt;
 use crate::lang::eval::machine::Code;
 use crate::lang::eval::module::{Given, Written};
 use crate::lang::syntax::ast::bound;
@@ -24,7 +25,7 @@ impl Cx<'_> {
         value: ExprId,
         allowed: Option<&Allowed>,
     ) -> Result<Value, Halt> {
-        let subject = format!("`{}`", self.names.text(name.name));
+        let subject = format!("`{}`", self.program.names.text(name.name));
         let ty = match ty {
             Some(ty) => Some(self.written_type(code, ty)?),
             None => None,
@@ -74,7 +75,7 @@ impl Cx<'_> {
         let declared = self.machine.at(code.module).file;
         let fail = |cx: &mut Self, code: &'static str, message: String, label: &str| {
             let diagnostic = Diagnostic::new(code, message, file, span, label).label(declared, name.span, "declared here");
-            cx.sink.push(words.iter().fold(diagnostic, |d, words| d.note(words)));
+            cx.sink.reports.push(words.iter().fold(diagnostic, |d, words| d.note(words)));
             Halt::Failed
         };
         let Some(value) = value else {
@@ -93,10 +94,10 @@ impl Cx<'_> {
                 return Err(fail(self, "E211", format!("{subject} is {wanted}, got {found}"), &label));
             }
         };
-        let said = self.sink.len();
+        let said = self.sink.reports.len();
         let fits = self.allowed(code, subject, &value, (ty, allowed), Some((file, span)), name.span);
         if let (true, Some(words)) = (fits.is_err(), words) {
-            self.sink.iter_mut().skip(said).for_each(|d| d.notes.push(words.clone()));
+            self.sink.reports.iter_mut().skip(said).for_each(|d| d.notes.push(words.clone()));
         }
         fits?;
         Ok(value)
@@ -145,7 +146,7 @@ impl Cx<'_> {
             None => Err(self.error(code, "E218", message, span, "outside").stop()),
             Some((file, place)) => {
                 let declared = self.machine.at(code.module).file;
-                self.sink.push(Diagnostic::new("E218", message, file, place, "outside").label(declared, span, "declared here"));
+                self.sink.reports.push(Diagnostic::new("E218", message, file, place, "outside").label(declared, span, "declared here"));
                 Err(Halt::Failed)
             }
         }
@@ -160,7 +161,7 @@ impl Cx<'_> {
             return Some(Value::number(value));
         }
         let file = FileId(u32::MAX);
-        let (script, mistakes) = crate::lang::syntax::parse(&format!("let x = {text}"), file, &mut self.names);
+        let (script, mistakes) = crate::lang::syntax::parse(&format!("let x = {text}"), file, &mut self.program.names);
         if !mistakes.is_empty() {
             return None;
         }
@@ -176,9 +177,9 @@ impl Cx<'_> {
     fn literal_value(&self, nodes: &[Node], id: ExprId) -> Option<Value> {
         Some(match &nodes[id.index()].expr {
             Expr::Number(x) if x.is_finite() => Value::number(*x),
-            Expr::Quantity(x, unit) => Value::Number(units::quantity(*x, unit, self.unit)?),
+            Expr::Quantity(x, unit) => Value::Number(units::quantity(*x, unit, self.program.unit)?),
             Expr::Bool(b) => Value::Bool(*b),
-            Expr::Name(name) => Value::Word(self.names.text(*name).into()),
+            Expr::Name(name) => Value::Word(self.program.names.text(*name).into()),
             Expr::Text(parts) => match parts.as_slice() {
                 [] => Value::text(""),
                 [TextPart::Literal(text)] => Value::text(text),
@@ -208,7 +209,7 @@ impl Cx<'_> {
     pub(crate) fn give(&mut self, module: ModuleId, name: &str, given: Given) -> Result<(), Box<Diagnostic>> {
         let script = self.machine.at(module).script.clone();
         let params = || script.declarations.iter().filter(|d| d.keyword == Keyword::Param).filter_map(bound);
-        if let Some(b) = params().find(|b| self.names.text(b.name) == name) {
+        if let Some(b) = params().find(|b| self.program.names.text(b.name) == name) {
             self.machine.at_mut(module).given.push((b.name, given));
             return Ok(());
         }
@@ -216,7 +217,7 @@ impl Cx<'_> {
             Given::Text(_, Written { file, name, column: words, .. }) => (file, name, words),
             Given::Value(_, file, span) => (file, span, None),
         };
-        let names: Vec<&str> = params().map(|b| self.names.text(b.name)).collect();
+        let names: Vec<&str> = params().map(|b| self.program.names.text(b.name)).collect();
         let near = nearest(name, names.iter().copied());
         let label = near.map_or_else(|| "no such param".to_owned(), |n| format!("did you mean `{n}`?"));
         let diagnostic = Diagnostic::new("E219", format!("there is no param `{name}`"), file, span, label);
@@ -231,7 +232,7 @@ impl Cx<'_> {
 
     /// Params from outside by the texts of literals: of a table where their cells are known, else each with a file of its own.
     pub(crate) fn give_all(&mut self, module: ModuleId, sets: &[(String, String)], row: Option<&TableRow>) {
-        let table = row.map(|row| (row, self.sources.add(&*row.file, &*row.text)));
+        let table = row.map(|row| (row, self.program.sources.add(&*row.file, &*row.text)));
         for (name, value) in sets {
             let cell = table.and_then(|(row, file)| Some((row, file, row.cells.iter().find(|cell| cell.name == *name)?)));
             let at = match cell {
@@ -243,7 +244,7 @@ impl Cx<'_> {
                 None => {
                     let text: Arc<str> = format!("{name}={value}").into();
                     let all = Span { start: 0, end: u32::try_from(text.len()).unwrap_or(u32::MAX) };
-                    Written { file: self.sources.add("set", &*text), name: all, value: all, column: None, cell: None }
+                    Written { file: self.program.sources.add("set", &*text), name: all, value: all, column: None, cell: None }
                 }
             };
             if let Err(diagnostic) = self.give(module, name, Given::Text(value.as_str().into(), at)) {

@@ -8,7 +8,8 @@ use crate::base::limits;
 use crate::base::origin::Origin;
 use crate::draw::View;
 use crate::lang::declare::collections::{Resolved, find};
-use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::halt::Halt;
 use crate::lang::eval::machine::{Code, Gather};
 use crate::lang::syntax::ast;
 use crate::lang::syntax::ast::{ExprId, Keyword};
@@ -51,7 +52,7 @@ impl Cx<'_> {
         let drawn = gather.take(self.things(code, things, Keyword::Picture));
         let path = gather.take(self.path(code, to));
         let resolved = gather.take(self.settings(code, "picture", settings::PICTURE, settings));
-        let zoom = settings.iter().find(|s| self.names.text(s.key) == "zoom").map(|s| s.value);
+        let zoom = settings.iter().find(|s| self.program.names.text(s.key) == "zoom").map(|s| s.value);
         let zoom = zoom.map(|id| self.things(code, &[id], Keyword::Picture)).and_then(|found| gather.take(found));
         gather.done()?;
         let resolved = resolved.unwrap_or_default();
@@ -97,7 +98,7 @@ impl Cx<'_> {
 
     /// Where the eye is; E306 for a direction without length or an up along it.
     fn view(&mut self, code: Code<'_>, settings: &[ast::Setting], resolved: &[Resolved]) -> Result<View, Halt> {
-        let place = |cx: &Self, key: &str| settings.iter().find(|s| cx.names.text(s.key) == key).map(|s| s.value);
+        let place = |cx: &Self, key: &str| settings.iter().find(|s| cx.program.names.text(s.key) == key).map(|s| s.value);
         let mut view = match find(resolved, "view").map(|r| &r.value) {
             Some(Value::Word(word)) => View::named(word),
             Some(Value::Vector(eye, _)) => Some(View { eye: *eye, up: None, perspective: false }),
@@ -126,7 +127,7 @@ impl Cx<'_> {
     /// E306 for more pixels than a picture may have.
     fn page(&mut self, code: Code<'_>, settings: &[ast::Setting], (width, height): (u32, u32)) -> Result<(), Halt> {
         let pixels = u64::from(width) * u64::from(height);
-        let last = settings.iter().rfind(|s| matches!(self.names.text(s.key), "width" | "height")).map(|s| s.value);
+        let last = settings.iter().rfind(|s| matches!(self.program.names.text(s.key), "width" | "height")).map(|s| s.value);
         match last {
             Some(id) if pixels > limits::PICTURE_PIXELS => {
                 let text = format!("a picture has at most {} pixels, got {width} × {height} = {pixels}", limits::PICTURE_PIXELS);

@@ -1,7 +1,8 @@
 //! `near` and `in` clauses of a mesh: places where elements are smaller.
 
 use crate::lang::declare::collections::filled;
-use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::halt::Halt;
 
 use crate::base::bbox::Box3;
 use crate::base::origin::Origin;
@@ -59,7 +60,7 @@ impl Cx<'_> {
     /// Boxes as `box` and `bbox` give them: records with the points `min` and `max`.
     fn boxes(&mut self, code: Code<'_>, things: &[ExprId]) -> Result<Vec<Box3>, Halt> {
         let mut boxes = Vec::new();
-        let (min, max) = (self.names.intern("min"), self.names.intern("max"));
+        let (min, max) = (self.program.names.intern("min"), self.program.names.intern("max"));
         for &thing in things {
             let value = self.eval(code, thing)?;
             for value in self.flattened(code, thing, value)? {

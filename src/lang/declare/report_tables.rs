@@ -45,11 +45,11 @@ impl Cx<'_> {
                     _ => Vec::new(),
                 };
                 let rows = items.iter().map(row).collect();
-                let names = keys.iter().map(|k| self.names.text(*k).to_owned()).collect();
+                let names = keys.iter().map(|k| self.program.names.text(*k).to_owned()).collect();
                 self.with_units(title, names, rows)
             }
             Value::Record(r) => {
-                let names = r.keys.iter().map(|k| self.names.text(*k).to_owned()).collect();
+                let names = r.keys.iter().map(|k| self.program.names.text(*k).to_owned()).collect();
                 self.with_units(title, names, vec![r.values.clone()])
             }
             list if list.len().is_some() => {
@@ -83,7 +83,7 @@ impl Cx<'_> {
             });
             let dim = dims.next();
             let one = dim.is_some_and(|d| dims.all(|other| other == d));
-            let unit = dim.filter(|_| one).map_or_else(String::new, |d: Dim| units::unit_text(d, self.unit));
+            let unit = dim.filter(|_| one).map_or_else(String::new, |d: Dim| units::unit_text(d, self.program.unit));
             for row in &mut rows {
                 if row.len() <= k {
                     row.push(Value::None);

@@ -5,7 +5,8 @@ use crate::base::origin::Origin;
 use crate::lang::declare::collections::Resolved;
 use crate::lang::diag::diagnostic::Label;
 use crate::lang::diag::span::Span;
-use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::halt::Halt;
 use crate::lang::eval::machine::Code;
 use crate::lang::syntax::ast::ExprId;
 use crate::lang::values::types::Ty;
@@ -49,7 +50,7 @@ impl Cx<'_> {
         let file = self.machine.at(code.module).file;
         let (share, found) = (self.span_of(setting.origin), said.iter().map(|expr| code.span(*expr)).collect::<Vec<_>>());
         let span = found.first().copied().unwrap_or_default();
-        let words = found.iter().map(|span| format!("`{}`", self.sources.text(file, *span))).collect::<Vec<_>>().join(" and ");
+        let words = found.iter().map(|span| format!("`{}`", self.program.sources.text(file, *span))).collect::<Vec<_>>().join(" and ");
         let holds = if found.len() == 1 { "contains" } else { "contain" };
         let text = format!("`{}` is a percentage of the diagonal of what is meshed, and {words} {holds} nothing", setting.key);
         let draft = self.error(code, "E306", text, span, "is empty");

@@ -11,10 +11,11 @@
 use crate::base::bbox::Box3;
 use crate::base::digest::{Digest, StableHasher};
 use crate::lang::declare::snap_rounds::Rounds;
-use crate::lang::eval::context::{Cx, Snapping, Turn};
+use crate::lang::eval::context::Cx;
 use crate::lang::eval::machine::{Code, Site};
 use crate::lang::eval::memory::Keys;
 use crate::lang::eval::module::State;
+use crate::lang::eval::pipeline::{Snapping, Turn};
 use crate::lang::eval::stages;
 use crate::lang::syntax::ast::bound;
 use crate::lang::syntax::ast::{DeclarationKind, ExprId, Keyword};
@@ -110,7 +111,7 @@ impl Cx<'_> {
         let parts = stages::gather(self, module);
         let mut of: Vec<(u32, Keyword)> = Vec::new();
         let looked_at = &[Keyword::Point, Keyword::Curve];
-        stages::each_member(self.machine.at(module), &self.names, looked_at, &mut |i, keyword, _, _, _| of.push((i, keyword)));
+        stages::each_member(self.machine.at(module), &self.program.names, looked_at, &mut |i, keyword, _, _, _| of.push((i, keyword)));
         let turn = |i: u32| match rounds.of[i as usize] {
             now if now == round => Some(Turn::Now),
             before if before < round => Some(Turn::Before { named: rounds.named[i as usize] }),
@@ -130,7 +131,7 @@ impl Cx<'_> {
             let code = Code { nodes: &declaration.nodes, module, declaration: index };
             self.settle(code, stop, declaration.span);
         }
-        let said = std::mem::take(&mut self.sink);
+        let said = std::mem::take(&mut self.sink.reports);
         self.machine.filed.extend(said.into_iter().map(|d| (Some((module, index)), d)));
         let mut curves = snapping.curves.into_iter();
         self.replace_curves(module, &|i| turn(i as u32).is_some(), &mut || curves.next().map(|c| c.0.value), moved);

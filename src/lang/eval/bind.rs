@@ -2,7 +2,8 @@
 
 use crate::lang::diag::span::Span;
 use crate::lang::eval::coerce::axis_of_word;
-use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::halt::Halt;
 use crate::lang::eval::machine::{Code, Gather};
 use crate::lang::eval::std::{Args, Builtin};
 use crate::lang::syntax::ast::{Arg, Expr, ExprId};
@@ -45,7 +46,7 @@ fn places(params: &[&str], rest: Option<usize>, taken: usize, args: &[Option<&st
 impl Cx<'_> {
     /// Parameter of each argument of a call, every mistake reported.
     pub(crate) fn match_args(&mut self, code: Code<'_>, signature: &Signature<'_>, taken: usize, args: &[Arg]) -> Result<Vec<usize>, Halt> {
-        let names: Vec<Option<&str>> = args.iter().map(|a| a.name.map(|(n, _)| self.names.text(n))).collect();
+        let names: Vec<Option<&str>> = args.iter().map(|a| a.name.map(|(n, _)| self.program.names.text(n))).collect();
         let found = places(&signature.params, signature.rest, taken, &names);
         drop(names);
         let mut gather = Gather::default();
@@ -53,7 +54,7 @@ impl Cx<'_> {
         for (arg, place) in args.iter().zip(&found) {
             let result = match (place, arg.name) {
                 (None, Some((name, span))) => {
-                    let text = self.names.text(name).to_owned();
+                    let text = self.program.names.text(name).to_owned();
                     Err(self.no_argument(code, signature, &text, (span, arg.value)))
                 }
                 (None, None) => Err(self.too_many(code, signature, arg.value)),
@@ -79,7 +80,7 @@ impl Cx<'_> {
         first: Option<Value>,
         args: &[Arg],
     ) -> Result<Args, Halt> {
-        let (said, alone) = (self.sink.len(), first.is_none());
+        let (said, alone) = (self.sink.reports.len(), first.is_none());
         let bound = self.bound(code, id, builtin, first, args);
         if alone && matches!(bound, Err(Halt::Failed)) {
             self.type_out(code, id, builtin, args, said);
@@ -142,9 +143,9 @@ impl Cx<'_> {
             return self.eval_as(code, id, ty, &subject());
         }
         if let (Ty::Direction | Ty::Axis | Ty::Optional(Ty::Direction | Ty::Axis), Expr::Name(name)) = (ty, code.expr(id))
-            && let Some(direction) = axis_of_word(self.names.text(*name)).filter(|_| !self.is_bound(code.module, *name))
+            && let Some(direction) = axis_of_word(self.program.names.text(*name)).filter(|_| !self.is_bound(code.module, *name))
         {
-            let text = format!("`{}` is not defined", self.names.text(*name));
+            let text = format!("`{}` is not defined", self.program.names.text(*name));
             let draft = self.error(code, "E201", text, code.span(id), "a direction is written with three numbers");
             return Err(draft.ways(code.span(id), &[direction.to_owned()]).stop());
         }
@@ -251,7 +252,7 @@ impl Cx<'_> {
     /// Where the arguments of a failed call stand, by parameter name.
     pub(crate) fn blame(&self, code: Code<'_>, id: ExprId, builtin: &'static Builtin, first: bool, args: &[Arg]) -> Blame {
         let params: Vec<&str> = builtin.params.iter().map(|p| p.name).collect();
-        let names: Vec<Option<&str>> = args.iter().map(|a| a.name.map(|(n, _)| self.names.text(n))).collect();
+        let names: Vec<Option<&str>> = args.iter().map(|a| a.name.map(|(n, _)| self.program.names.text(n))).collect();
         let found = places(&params, rest_of(builtin), usize::from(first), &names);
         let before = first.then(|| builtin.params.first().map(|p| (p.name, code.span(before_dot(code, id))))).flatten();
         let whole: Vec<(&'static str, Span)> = before.into_iter().collect();

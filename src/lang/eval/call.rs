@@ -8,7 +8,8 @@ use crate::lang::diag::diagnostic::Diagnostic;
 use crate::lang::diag::span::Span;
 use crate::lang::eval::bind::{Signature, call_name, positional};
 use crate::lang::eval::coerce::accepts;
-use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::halt::Halt;
 use crate::lang::eval::later;
 use crate::lang::eval::machine::{Code, Frame, Gather, Site, Word};
 use crate::lang::eval::module::State;
@@ -29,7 +30,7 @@ impl Cx<'_> {
         if let Some(Word::Known { function, fields }) = self.machine.words.get(name.index()) {
             return (*function, !fields.is_empty());
         }
-        let text = self.names.text(name);
+        let text = self.program.names.text(name);
         let function = std::builtins().find(|b| b.name == text);
         let fields: Box<[&'static Builtin]> = std::fields().filter(|f| f.name == text).collect();
         let has_fields = !fields.is_empty();
@@ -104,7 +105,7 @@ impl Cx<'_> {
             Some(declaration) => self.call_fn(code, id, (module, declaration), None, args),
             None if self.machine.at(module).is_broken(name) => Err(Halt::Broken),
             None => {
-                let (label, text) = (self.machine.at(module).label.clone(), self.names.text(name).to_owned());
+                let (label, text) = (self.machine.at(module).label.clone(), self.program.names.text(name).to_owned());
                 Err(self.error(code, "E214", format!("`{label}` has no function `{text}`"), span, "no such function").stop())
             }
         }
@@ -138,9 +139,9 @@ impl Cx<'_> {
                 let of_value = matches!(fault, crate::base::fault::Fault::Value(_));
                 let diagnostic = self.by_place((code, call_name(code, id)), (diagnostic, of_value), (builtin, before.as_ref(), args));
                 let few = diagnostic.code.0 == "E402";
-                self.sink.push(diagnostic);
+                self.sink.reports.push(diagnostic);
                 if few {
-                    self.type_out(code, id, builtin, args, self.sink.len() - 1);
+                    self.type_out(code, id, builtin, args, self.sink.reports.len() - 1);
                 }
                 Err(Halt::Failed)
             }
@@ -157,7 +158,7 @@ impl Cx<'_> {
         (mut diagnostic, of_value): (Diagnostic, bool),
         (builtin, first, args): (&'static Builtin, Option<&Value>, &[Arg]),
     ) -> Diagnostic {
-        let named = |name: &str| args.iter().any(|a| a.name.is_some_and(|(n, _)| self.names.text(n) == name));
+        let named = |name: &str| args.iter().any(|a| a.name.is_some_and(|(n, _)| self.program.names.text(n) == name));
         let spoken = builtin.params.iter().position(|p| diagnostic.message.starts_with(&format!("`{}` ", p.name)));
         if let Some(k) = spoken.filter(|k| of_value && !named(builtin.params[*k].name)) {
             let name = builtin.params[k].name;
@@ -221,8 +222,8 @@ impl Cx<'_> {
         self.machine.site = Site { module, declaration, member: site.member, expr: *body };
         let result = work::uncharged(|| self.run_fn(callee, params, given, *body)).and_then(|value| match returns {
             Some(ty) => {
-                let ty = Ty::written(self.names.text(ty.name), ty.lists).unwrap_or(Ty::Any);
-                let subject = format!("the result of `{}`", self.names.text(bound.name));
+                let ty = Ty::written(self.program.names.text(ty.name), ty.lists).unwrap_or(Ty::Any);
+                let subject = format!("the result of `{}`", self.program.names.text(bound.name));
                 self.fit_expr(callee, *body, value, ty, &subject)
             }
             None => Ok(value),
@@ -248,9 +249,9 @@ impl Cx<'_> {
     }
 
     fn param_value(&mut self, code: Code<'_>, id: ExprId, param: &FnParam) -> Result<Value, Halt> {
-        match param.ty.and_then(|ty| Ty::written(self.names.text(ty.name), ty.lists)) {
+        match param.ty.and_then(|ty| Ty::written(self.program.names.text(ty.name), ty.lists)) {
             Some(ty) => {
-                let subject = format!("`{}`", self.names.text(param.bound.name));
+                let subject = format!("`{}`", self.program.names.text(param.bound.name));
                 self.eval_as(code, id, ty, &subject)
             }
             None => self.eval(code, id),
@@ -276,9 +277,9 @@ impl Cx<'_> {
         let mut given: Vec<Option<Value>> = vec![None; params.len()];
         let mut gather = Gather::default();
         if let (Some(value), Some(param)) = (first, params.first()) {
-            let value = match param.ty.and_then(|ty| Ty::written(self.names.text(ty.name), ty.lists)) {
+            let value = match param.ty.and_then(|ty| Ty::written(self.program.names.text(ty.name), ty.lists)) {
                 Some(ty) => {
-                    let subject = format!("`{}`", self.names.text(param.bound.name));
+                    let subject = format!("`{}`", self.program.names.text(param.bound.name));
                     self.fit_expr(code, id, value, ty, &subject)
                 }
                 None => Ok(value),
@@ -292,7 +293,7 @@ impl Cx<'_> {
         match params.iter().zip(&given).find(|(p, v)| v.is_none() && p.default.is_none()) {
             None => Ok(given),
             Some((param, _)) => {
-                let missing = self.names.text(param.bound.name).to_owned();
+                let missing = self.program.names.text(param.bound.name).to_owned();
                 self.with_signature(name, params, |cx, signature| Err(cx.missing(code, id, signature, &missing)))
             }
         }
@@ -304,13 +305,13 @@ impl Cx<'_> {
         params: &[FnParam],
         work: impl FnOnce(&mut Self, &Signature<'_>) -> Result<T, Halt>,
     ) -> Result<T, Halt> {
-        let texts: Vec<String> = params.iter().map(|p| self.names.text(p.bound.name).to_owned()).collect();
-        let name = self.names.text(name).to_owned();
+        let texts: Vec<String> = params.iter().map(|p| self.program.names.text(p.bound.name).to_owned()).collect();
+        let name = self.program.names.text(name).to_owned();
         let parts: Vec<String> = params
             .iter()
             .zip(&texts)
             .map(|(p, text)| match p.ty {
-                Some(ty) => format!("{text}: {}", self.names.text(ty.name)),
+                Some(ty) => format!("{text}: {}", self.program.names.text(ty.name)),
                 None => text.clone(),
             })
             .collect();
@@ -356,7 +357,7 @@ impl Cx<'_> {
             None if self.machine.at(module).is_broken(name) => Err(Halt::Broken),
             found => {
                 let label = self.machine.at(module).label.clone();
-                let text = self.names.text(name).to_owned();
+                let text = self.program.names.text(name).to_owned();
                 if found.is_some() {
                     let draft = self.error(code, "E211", format!("`{label}.{text}` is a function"), span, "functions are not values");
                     return Err(draft.help(format!("call it: `{label}.{text}(…)`")).stop());
@@ -370,13 +371,13 @@ impl Cx<'_> {
     /// E214: nothing of that name for this kind.
     #[cold]
     fn no_field(&mut self, code: Code<'_>, value: &Value, name: Name, span: Span) -> Halt {
-        let text = self.names.text(name).to_owned();
+        let text = self.program.names.text(name).to_owned();
         if later::is_function(&text) {
             return self.error(code, "E230", format!("`{text}` is not in this version"), span, "a later version has it").stop();
         }
         let kind = self.kind(value);
         let fields: Vec<String> = match value {
-            Value::Record(r) => r.keys.iter().map(|k| self.names.text(*k).to_owned()).collect(),
+            Value::Record(r) => r.keys.iter().map(|k| self.program.names.text(*k).to_owned()).collect(),
             _ => std::fields().filter(|f| f.params.first().is_some_and(|p| accepts(p.ty, value))).map(|f| f.name.to_owned()).collect(),
         };
         let near = meant(&text, fields.iter().map(String::as_str)).map(str::to_owned);
@@ -454,10 +455,11 @@ impl Cx<'_> {
 
     /// `part["deck"]`.
     fn member(&mut self, code: Code<'_>, record: &Record, key: &str, index: ExprId) -> Result<Value, Halt> {
-        if let Some(value) = self.names.find(key).and_then(|name| record.get(name)) {
+        if let Some(value) = self.program.names.find(key).and_then(|name| record.get(name)) {
             return Ok(value.clone());
         }
-        let near = crate::lang::words::names::nearest(key, record.keys.iter().map(|name| self.names.text(*name))).map(str::to_owned);
+        let near =
+            crate::lang::words::names::nearest(key, record.keys.iter().map(|name| self.program.names.text(*name))).map(str::to_owned);
         let draft = self.error(code, "E214", format!("there is no \"{key}\""), code.span(index), "no such name");
         Err(match near {
             Some(near) => draft.help(format!("[\"{near}\"]")).stop(),

@@ -29,10 +29,10 @@ impl Cx<'_> {
             if told.len() >= SHOWN {
                 return;
             }
-            let text = self.names.text(name);
+            let text = self.program.names.text(name);
             let local = self.machine.locals[self.machine.base..].iter().rev().find(|l| l.0 == name).filter(|_| locals);
             if let Some((_, Value::Number(q))) = local {
-                told.push((None, format!("`{text} = {}`", crate::lang::values::units::told(*q, self.unit))));
+                told.push((None, format!("`{text} = {}`", crate::lang::values::units::told(*q, self.program.unit))));
             }
             let m = self.machine.at(module);
             let Some(index) = m.find(name).filter(|i| local.is_none() && !told.iter().any(|t| t.0 == Some(*i))) else { continue };
@@ -40,8 +40,8 @@ impl Cx<'_> {
             let declaration = &m.script.declarations[index as usize];
             let Some((at, name_span)) = value_of(declaration) else { continue };
             let node = &declaration.nodes[at.index()];
-            let (source, value) = (self.sources.text(m.file, node.span), crate::lang::values::units::told(*q, self.unit));
-            let line = self.sources.place(m.file, name_span.start).map_or(1, |p| p.line);
+            let (source, value) = (self.program.sources.text(m.file, node.span), crate::lang::values::units::told(*q, self.program.unit));
+            let line = self.program.sources.place(m.file, name_span.start).map_or(1, |p| p.line);
             let short = source.chars().count() <= SOURCE && !source.contains(['\n', '`']);
             let words = if is_literal(declaration, at) || !short {
                 format!("`{text} = {value}`")
@@ -62,8 +62,9 @@ impl Cx<'_> {
                 for (i, row) in table.rows.iter().enumerate() {
                     let found = (0..row.len().unwrap_or(0)).find(|&k| matches!(row.item(k), Some(Value::Text(t)) if Arc::ptr_eq(&t, text)));
                     let Some(k) = found else { continue };
-                    let file = self.sources.text(self.machine.at(ModuleId::at(m)).file, declaration.nodes[path.index()].span);
-                    let column = table.keys.get(k).map_or_else(|| (k + 1).to_string(), |key| format!("`{}`", self.names.text(*key)));
+                    let file = self.program.sources.text(self.machine.at(ModuleId::at(m)).file, declaration.nodes[path.index()].span);
+                    let column =
+                        table.keys.get(k).map_or_else(|| (k + 1).to_string(), |key| format!("`{}`", self.program.names.text(*key)));
                     return Some(format!("row {} (`.rows[{i}]`), column {column} of {file} holds \"{text}\"", i + 1));
                 }
             }

@@ -1,7 +1,8 @@
 //! Reports of declarations that need themselves.
 
 use crate::lang::diag::diagnostic::Label;
-use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::halt::Halt;
 use crate::lang::eval::machine::Code;
 use crate::lang::syntax::ast::bound;
 use crate::lang::syntax::ast::{Expr, Keyword, Node};
@@ -31,7 +32,7 @@ impl Cx<'_> {
             .filter_map(|&(m, d)| {
                 let module = self.machine.at(m);
                 let b = bound(&module.script.declarations[d as usize])?;
-                Some(Label { file: module.file, span: b.span, text: format!("`{}` is declared here", self.names.text(b.name)) })
+                Some(Label { file: module.file, span: b.span, text: format!("`{}` is declared here", self.program.names.text(b.name)) })
             })
             .collect();
         // The report stands where the last member names the first one again.

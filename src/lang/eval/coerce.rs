@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::halt::Halt;
 use crate::lang::eval::machine::Code;
 use crate::lang::eval::std::kinds::EdgeOf;
 use crate::lang::eval::std::topology::curve_of;
@@ -64,7 +65,7 @@ impl Cx<'_> {
             (Ty::Quantity(dim), Value::Number(q)) => match q.dim {
                 d if d == dim => Ok(None),
                 Dim::NONE if dim.is_length_power() && !q.percent => {
-                    let factor = units::convert(1.0, self.machine.at(module).unit, self.unit, dim.length);
+                    let factor = units::convert(1.0, self.machine.at(module).unit, self.program.unit, dim.length);
                     Ok(Some(Value::quantity(q.value * factor, dim)))
                 }
                 Dim::NONE => Err(Misfit::Bare),
@@ -354,7 +355,7 @@ impl Cx<'_> {
     fn eval_choice(&mut self, code: Code<'_>, id: ExprId, words: &[&str], subject: &str) -> Result<Value, Halt> {
         match code.expr(id) {
             Expr::Name(name) => {
-                let text = self.names.text(*name);
+                let text = self.program.names.text(*name);
                 if words.contains(&text) {
                     return Ok(Value::Word(text.into()));
                 }

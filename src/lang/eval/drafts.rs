@@ -2,7 +2,8 @@
 
 use crate::lang::diag::diagnostic::{Diagnostic, FileId, Label};
 use crate::lang::diag::span::Span;
-use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::halt::Halt;
 use crate::lang::eval::machine::Code;
 
 /// Calls shown above a failure.
@@ -37,7 +38,7 @@ impl<'w> Cx<'w> {
             let module = self.machine.at(frame.site.module);
             let nodes = &module.script.declarations[frame.site.declaration as usize].nodes;
             let Some(node) = nodes.get(frame.site.expr.index()) else { continue };
-            let text = format!("in `{}(…)` called here", self.names.text(frame.name));
+            let text = format!("in `{}(…)` called here", self.program.names.text(frame.name));
             let label = Label { file: module.file, span: node.span, text };
             let outermost = frame.site.module == self.machine.running.last().map_or(frame.site.module, |r| r.0)
                 && Some(frame.site.declaration) == self.machine.running.last().map(|r| r.1);
@@ -114,17 +115,17 @@ impl Draft<'_, '_> {
 
     /// The unit of the run.
     pub fn unit(&self) -> crate::lang::values::units::LengthUnit {
-        self.cx.unit
+        self.cx.program.unit
     }
 
     /// Files it and gives the reason to stop.
     pub fn stop(self) -> Halt {
-        self.cx.sink.push(self.diagnostic);
+        self.cx.sink.reports.push(self.diagnostic);
         Halt::Failed
     }
 
     /// Files it; evaluation goes on (warnings).
     pub fn say(self) {
-        self.cx.sink.push(self.diagnostic);
+        self.cx.sink.reports.push(self.diagnostic);
     }
 }

@@ -6,7 +6,8 @@ use glam::DVec3;
 
 use crate::base::fault::ValueFault;
 use crate::base::limits;
-use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::halt::Halt;
 use crate::lang::eval::machine::{Code, Gather};
 use crate::lang::eval::module::State;
 use crate::lang::eval::room::LIST_COST;
@@ -91,7 +92,7 @@ impl Cx<'_> {
     }
 
     fn literal(&mut self, code: Code<'_>, id: ExprId, value: f64, unit: &str) -> Result<Value, Halt> {
-        match units::quantity(value, unit, self.unit) {
+        match units::quantity(value, unit, self.program.unit) {
             Some(q) if q.value.is_finite() => Ok(Value::Number(q)),
             Some(_) => Err(self.error(code, "E408", "this number is too large", code.span(id), "not a finite number").stop()),
             // The parser lets known units through alone.
@@ -143,7 +144,7 @@ impl Cx<'_> {
         let mut values = Vec::with_capacity(fields.len());
         for (key, value) in fields {
             if keys.contains(key) {
-                let text = format!("`{}` is given twice", self.names.text(*key));
+                let text = format!("`{}` is given twice", self.program.names.text(*key));
                 return Err(self.error(code, "E304", text, code.span(*value), "the second one").stop());
             }
             keys.push(*key);
@@ -322,7 +323,7 @@ impl Cx<'_> {
 
     /// Model units in one unit of the script: what a bare number is multiplied by where a length is wanted.
     pub(crate) fn bare_unit(&self, module: ModuleId) -> f64 {
-        units::convert(1.0, self.machine.at(module).unit, self.unit, 1)
+        units::convert(1.0, self.machine.at(module).unit, self.program.unit, 1)
     }
 }
 

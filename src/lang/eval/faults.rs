@@ -20,7 +20,7 @@ const NAME_CHARACTERS: usize = 40;
 /// Speaks of entities by their declared names and of quantities in model units.
 impl Say for Cx<'_> {
     fn name(&self, origin: Origin) -> String {
-        let Some(place) = self.origins.place(origin) else { return String::new() };
+        let Some(place) = self.program.origins.place(origin) else { return String::new() };
         let outer = self.outermost(place);
         let module = self.machine.at(outer.module);
         let declaration = &module.script.declarations[outer.declaration as usize];
@@ -31,12 +31,13 @@ impl Say for Cx<'_> {
         if let (DeclarationKind::Load { bound, .. }, [face, NO_MEMBER]) = (&declaration.kind, outer.member)
             && face != NO_MEMBER
         {
-            return format!("{}.faces[{face}]", self.names.text(bound.name));
+            return format!("{}.faces[{face}]", self.program.names.text(bound.name));
         }
         if is_root && let Some(b) = bound(declaration) {
-            return member_name(self.names.text(b.name), outer.member);
+            return member_name(self.program.names.text(b.name), outer.member);
         }
-        let text = outer.expr.and_then(|e| declaration.nodes.get(e.index())).map(|n| self.sources.text(module.file, n.span)).unwrap_or("");
+        let text =
+            outer.expr.and_then(|e| declaration.nodes.get(e.index())).map(|n| self.program.sources.text(module.file, n.span)).unwrap_or("");
         let short = text.chars().count() <= NAME_CHARACTERS && !text.contains(['\n', '`']);
         if short { text.to_owned() } else { String::new() }
     }
@@ -67,7 +68,7 @@ pub(crate) fn member_name(name: &str, member: [u32; 2]) -> String {
 impl Cx<'_> {
     /// The call of the declaration's own expression that led to a place.
     pub(crate) fn outermost(&self, mut place: Place) -> Place {
-        while let Some(caller) = self.origins.place(place.caller) {
+        while let Some(caller) = self.program.origins.place(place.caller) {
             place = caller;
         }
         place
@@ -75,7 +76,7 @@ impl Cx<'_> {
 
     /// Where an entity was made: the innermost expression, and the calls that led there.
     pub fn span_of(&self, origin: Origin) -> Option<(FileId, Span)> {
-        let place = self.origins.place(origin)?;
+        let place = self.program.origins.place(origin)?;
         let module = self.machine.at(place.module);
         let declaration = &module.script.declarations[place.declaration as usize];
         let span = match place.expr {
@@ -141,8 +142,8 @@ impl Cx<'_> {
         let m = self.machine.at(module);
         let declaration = &m.script.declarations[index as usize];
         let name = match bound(declaration) {
-            Some(b) => self.names.text(b.name).to_owned(),
-            None => self.sources.text(m.file, declaration.span).lines().next().unwrap_or("").to_owned(),
+            Some(b) => self.program.names.text(b.name).to_owned(),
+            None => self.program.sources.text(m.file, declaration.span).lines().next().unwrap_or("").to_owned(),
         };
         if m.label.is_empty() { name } else { format!("{}.{name}", m.label) }
     }

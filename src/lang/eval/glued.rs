@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use crate::base::fault::{Fault, SurfaceFault};
 use crate::base::work::Once;
-use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::halt::Halt;
 use crate::lang::eval::scene::Scene;
 use crate::lang::values::value::{ModuleId, ShellValue};
 use crate::model::SurfaceId;

@@ -14,7 +14,7 @@ use crate::surface::Surface;
 impl Cx<'_> {
     /// The part that a face was imported with, and its number there.
     fn part_of(&self, face: &Surface) -> Option<(&Arc<PartValue>, usize)> {
-        let Place { module, declaration, member, .. } = self.origins.place(face.origin())?;
+        let Place { module, declaration, member, .. } = self.program.origins.place(face.origin())?;
         let [face, NO_MEMBER] = member else { return None };
         let State::Done(value) = self.machine.modules.get(module.index())?.states.get(declaration as usize)? else { return None };
         value.part().map(|part| (part, face as usize))

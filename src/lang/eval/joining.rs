@@ -52,7 +52,7 @@ impl Cx<'_> {
             return;
         };
         let whole = code.span(id);
-        let source = self.sources.text(file, whole);
+        let source = self.program.sources.text(file, whole);
         let (before, behind) = ((span.start - whole.start) as usize, (span.end - whole.start) as usize);
         let call = format!("{}{text}{}", &source[..before], &source[behind..]);
         let short = call.chars().count() <= SHOWN && !call.contains(['\n', '`']);
@@ -72,11 +72,12 @@ impl Cx<'_> {
         let whole = code.span(id);
         if let (true, Expr::Binary { a: left, .. }) = (ordered, code.expr(id)) {
             let span = code.span(*left);
-            return Some((span, format!("{} + {put}", self.sources.text(file, span))));
+            return Some((span, format!("{} + {put}", self.program.sources.text(file, span))));
         }
         let stands = |name: &str| {
             let at = blame.items.iter().map(|item| item.1);
-            at.filter(|s| !name.is_empty() && s.start >= whole.start && s.end <= whole.end).find(|s| self.sources.text(file, *s) == name)
+            at.filter(|s| !name.is_empty() && s.start >= whole.start && s.end <= whole.end)
+                .find(|s| self.program.sources.text(file, *s) == name)
         };
         let (first, second) = (self.name(a.of), self.name(b.of));
         match stands(&first) {
@@ -132,7 +133,7 @@ impl Cx<'_> {
         let module = self.machine.at(module);
         for (declaration, state) in module.script.declarations.iter().zip(&module.states) {
             let (Some(b), State::Done(value)) = (bound(declaration), state) else { continue };
-            let name = self.names.text(b.name);
+            let name = self.program.names.text(b.name);
             match value {
                 Value::List(items) => {
                     for (k, item) in items.iter().enumerate() {

@@ -1,7 +1,8 @@
 //! Words of later versions: known, and refused by one error instead of being taken for a mistake.
 
 use crate::lang::diag::span::Span;
-use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::halt::Halt;
 use crate::lang::eval::machine::Code;
 use crate::lang::eval::near::{Among, Unknown};
 use crate::lang::eval::std;
@@ -31,16 +32,16 @@ impl Cx<'_> {
         if self.machine.at(code.module).is_broken(name) {
             return Err(Halt::Broken);
         }
-        match self.names.text(name) {
+        match self.program.names.text(name) {
             "pi" => return Ok(Value::number(::std::f64::consts::PI)),
             "network" => return Ok(Value::Network(code.module)),
             word if is_word(word) => return Ok(Value::Word(word.into())),
             _ => {}
         }
         if self.is_param_word(code.module, name) {
-            return Ok(Value::Word(self.names.text(name).into()));
+            return Ok(Value::Word(self.program.names.text(name).into()));
         }
-        let text = self.names.text(name).to_owned();
+        let text = self.program.names.text(name).to_owned();
         let span = code.span(id);
         let is_function = std::builtins().any(|b| b.name == text);
         if is_function {
@@ -55,7 +56,7 @@ impl Cx<'_> {
     /// E201 or E230: a function that is none.
     #[cold]
     pub(crate) fn no_function(&mut self, code: Code<'_>, id: ExprId, name: Name, span: Span) -> Halt {
-        let text = self.names.text(name).to_owned();
+        let text = self.program.names.text(name).to_owned();
         if is_function(&text) {
             return self.not_yet(code, &format!("`{text}`"), span);
         }
@@ -115,7 +116,7 @@ impl Cx<'_> {
         let Expr::Call { args, .. } = code.expr(id) else { return Vec::new() };
         let declaration = &self.machine.at(code.module).script.declarations[code.declaration as usize];
         let takes = matches!(declaration.keyword, Keyword::Mesh | Keyword::Shell | Keyword::Export | Keyword::Picture);
-        let setting = |a: &Arg| a.name.map(|(name, _)| format!("{}: {}", self.names.text(name), self.source(code, a.value)));
+        let setting = |a: &Arg| a.name.map(|(name, _)| format!("{}: {}", self.program.names.text(name), self.source(code, a.value)));
         let settings: Vec<String> = args.iter().filter_map(setting).collect();
         match args.as_slice() {
             [one] if one.name.is_none() => vec![format!("{text}[{}]", self.source(code, one.value))],

@@ -7,7 +7,8 @@ use crate::base::limits;
 use crate::base::origin::Origin;
 use crate::io::FileError;
 use crate::lang::diag::diagnostic::Diagnostic;
-use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::halt::Halt;
 use crate::lang::eval::machine::{Code, Gather};
 use crate::lang::eval::module::{Given, Module};
 use crate::lang::syntax::ast::{Arg, Bound, DeclarationKind, Expr, ExprId, Keyword, TextPart};
@@ -17,10 +18,10 @@ use crate::lang::values::value::{ModuleId, Value};
 impl Cx<'_> {
     /// Adds a script as a module: parsed, its units known, its names bound once. `place` is the module that it stands for anew.
     pub(crate) fn add_module(&mut self, name: &str, path: &str, text: Arc<str>, (label, place): (String, Option<ModuleId>)) -> ModuleId {
-        let file = self.sources.add(name, &*text);
-        let (script, mistakes) = crate::lang::syntax::parse(&text, file, &mut self.names);
+        let file = self.program.sources.add(name, &*text);
+        let (script, mistakes) = crate::lang::syntax::parse(&text, file, &mut self.program.names);
         self.machine.filed.extend(mistakes.into_iter().map(|d| (None, d)));
-        let (module, twice) = Module::new(file, path.into(), Arc::new(script), self.names.len());
+        let (module, twice) = Module::new(file, path.into(), Arc::new(script), self.program.names.len());
         let id = place.unwrap_or_else(|| ModuleId::at(self.machine.modules.len()));
         match self.machine.modules.get_mut(id.index()) {
             Some(before) => *before = module,
@@ -33,7 +34,7 @@ impl Cx<'_> {
         for (first, second) in twice {
             let bound = |i: u32| crate::lang::syntax::ast::bound(&script.declarations[i as usize]);
             let (Some(a), Some(b)) = (bound(first), bound(second)) else { continue };
-            let text = self.names.text(b.name);
+            let text = self.program.names.text(b.name);
             let diagnostic = Diagnostic::new("E202", format!("`{text}` is defined twice"), file, b.span, "again here")
                 .label(file, a.span, "first here")
                 .help(format!("another name: `{text}_2`"))
@@ -51,7 +52,7 @@ impl Cx<'_> {
         for (i, declaration) in script.declarations.iter().enumerate() {
             let DeclarationKind::Units(bound) = &declaration.kind else { continue };
             let owner = Some((id, i as u32));
-            let text = self.names.text(bound.name).to_owned();
+            let text = self.program.names.text(bound.name).to_owned();
             if let Some(first) = found {
                 let diagnostic = Diagnostic::new("E202", "`units` may be declared only once", file, bound.span, "again here").label(
                     file,
@@ -104,7 +105,7 @@ impl Cx<'_> {
             let what = "it is not UTF-8 text".to_owned();
             return Err(FileFault::CannotRead { of: origin, path: written, similar: Vec::new(), why: what }.into());
         };
-        let label = self.names.text(bound.name).to_owned();
+        let label = self.program.names.text(bound.name).to_owned();
         let parent = self.machine.at(code.module).label.clone();
         let label = if parent.is_empty() { label } else { format!("{parent}.{label}") };
         let before = self.loaded_by(code.module, code.declaration);
@@ -113,9 +114,9 @@ impl Cx<'_> {
         module.parent = Some((code.module, code.declaration));
         let file = self.machine.at(code.module).file;
         for (name, span, value) in given {
-            let name = self.names.text(name).to_owned();
+            let name = self.program.names.text(name).to_owned();
             if let Err(diagnostic) = self.give(id, &name, Given::Value(value, file, span)) {
-                self.sink.push(*diagnostic);
+                self.sink.reports.push(*diagnostic);
             }
         }
         Ok(Value::Module(id))
@@ -134,7 +135,7 @@ impl Cx<'_> {
             && !self.machine.at(code.module).is_broken(*name)
         {
             // Words are the module's own: whether it is one is asked there.
-            return Ok(Value::Word(self.names.text(*name).into()));
+            return Ok(Value::Word(self.program.names.text(*name).into()));
         }
         match self.eval(code, id)? {
             value @ (Value::Number(_) | Value::Bool(_) | Value::Text(_) | Value::Word(_)) => Ok(value),
@@ -164,7 +165,7 @@ impl Cx<'_> {
         let mut at = Some(module);
         while let Some(id) = at {
             let module = self.machine.at(id);
-            let name = self.sources.get(module.file).map_or(String::new(), |s| s.name.clone());
+            let name = self.program.sources.get(module.file).map_or(String::new(), |s| s.name.clone());
             names.push(name);
             if &*module.path == resolved {
                 names.reverse();

@@ -10,7 +10,8 @@ use crate::base::work::{self, Budget};
 use crate::lang::diag::diagnostic::Diagnostic;
 use crate::lang::diag::span::Span;
 use crate::lang::eval::bind::Blame;
-use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::halt::Halt;
 use crate::lang::eval::memory::Dependencies;
 use crate::lang::eval::memory::Sees;
 use crate::lang::eval::memory::Start;
@@ -334,7 +335,7 @@ impl Cx<'_> {
         let site = std::mem::replace(&mut self.machine.site, site);
         let base = std::mem::replace(&mut self.machine.base, self.machine.locals.len());
         let calls = std::mem::take(&mut self.machine.calls);
-        let sink = std::mem::take(&mut self.sink);
+        let sink = std::mem::take(&mut self.sink.reports);
         let start = self.start(module);
         let asked = std::mem::take(&mut self.machine.asked);
         let seen = std::mem::replace(&mut self.seen, Box3::EMPTY);
@@ -354,7 +355,7 @@ impl Cx<'_> {
         self.machine.calls = calls;
         self.machine.site = site;
         self.machine.running.pop();
-        let said = std::mem::replace(&mut self.sink, sink);
+        let said = std::mem::replace(&mut self.sink.reports, sink);
         let failed = said.iter().any(|d| d.severity() == Severity::Error);
         let state = match &result {
             Ok(_) if failed => State::Failed,
@@ -407,7 +408,7 @@ impl Cx<'_> {
             Halt::Fault(Fault::Interrupted) => Halt::Broken,
             Halt::Fault(fault) => {
                 let diagnostic = self.locate(&fault, code, span, &Blame::default());
-                self.sink.push(diagnostic);
+                self.sink.reports.push(diagnostic);
                 Halt::Failed
             }
             Halt::Bug(what) => self.error(code, "E999", format!("a bug in loft: {what}"), span, "while evaluating this").stop(),

@@ -14,15 +14,15 @@ impl Cx<'_> {
         if *value != id || !family.is_empty() {
             return None;
         }
-        let name = self.names.text(bound.name);
+        let name = self.program.names.text(bound.name);
         let span = Span { start: declaration.keyword_span.start, ..declaration.span };
         let as_list = || Some((span, format!("let {name} = …"), format!("let {name} = {}", self.source(code, id))));
         let Expr::Comprehension { clauses, body } = code.expr(id) else { return as_list() };
-        let keyword = self.sources.text(self.machine.at(code.module).file, declaration.keyword_span);
+        let keyword = self.program.sources.text(self.machine.at(code.module).file, declaration.keyword_span);
         let (mut short, mut head) = (format!("{keyword} {name}"), format!("{keyword} {name}"));
         for clause in clauses {
             let Clause::For(each) = clause else { return as_list() };
-            let each_name = self.names.text(each.name);
+            let each_name = self.program.names.text(each.name);
             short.push_str(&format!(" for {each_name} in …"));
             head.push_str(&format!(" for {each_name} in {}", self.source(code, each.list)));
         }

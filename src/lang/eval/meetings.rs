@@ -3,7 +3,8 @@
 use crate::base::fault::{CutFault, Fault, ValueFault};
 use crate::base::origin::Origin;
 use crate::lang::eval::bind::Blame;
-use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::halt::Halt;
 use crate::lang::eval::machine::Code;
 use crate::lang::eval::std::kinds::{Cutter, Meeting};
 use crate::lang::syntax::ast::{Expr, ExprId};
@@ -156,7 +157,7 @@ impl Cx<'_> {
             Ok(slice) => Ok(Value::Curve(slice.with_origin(origin))),
             Err(fault) => {
                 let diagnostic = self.locate(&fault, code, code.span(id), &Blame::default());
-                self.sink.push(diagnostic);
+                self.sink.reports.push(diagnostic);
                 Err(Halt::Failed)
             }
         }
@@ -180,7 +181,7 @@ impl Cx<'_> {
                 let found = self.quantity(q);
                 let end = crate::lang::values::units::quantity_text(
                     crate::lang::values::value::Quantity::new(chain.length(), Dim::LENGTH),
-                    self.unit,
+                    self.program.unit,
                 );
                 let text = format!("{found} is outside the curve");
                 return Err(self.error(code, "E306", text, code.span(id), format!("between 0 and 100%, or 0 and {end}")).stop());
@@ -197,7 +198,7 @@ impl Cx<'_> {
         };
         result.map_err(|fault| {
             let diagnostic = self.locate(&fault, code, code.span(id), &Blame::default());
-            self.sink.push(diagnostic);
+            self.sink.reports.push(diagnostic);
             Halt::Failed
         })
     }

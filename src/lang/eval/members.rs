@@ -3,7 +3,8 @@
 use crate::base::fault::{Fault, Say};
 use crate::base::limits;
 use crate::lang::eval::coerce::{Misfit, accepts, flatten_into};
-use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::halt::Halt;
 use crate::lang::eval::room::flat_len;
 use crate::lang::eval::std;
 use crate::lang::eval::std::Builtin;
@@ -131,7 +132,7 @@ impl Cx<'_> {
         match value {
             Value::Record(record) => {
                 for (key, value) in record.keys.iter().zip(&record.values) {
-                    self.push_member(&format!("{name}.{}", self.names.text(*key)), value.clone(), members);
+                    self.push_member(&format!("{name}.{}", self.program.names.text(*key)), value.clone(), members);
                 }
             }
             list if list.len().is_some() => members.push((name.to_owned(), Value::number(list.len().unwrap_or(0) as f64))),
@@ -164,7 +165,7 @@ impl Cx<'_> {
 
     /// A value without its unit, and the unit.
     fn apart(&self, value: Value) -> (Value, String) {
-        let unit = |dim: Dim| units::unit_text(dim, self.unit);
+        let unit = |dim: Dim| units::unit_text(dim, self.program.unit);
         match value {
             Value::Number(q) => (Value::number(q.value), unit(q.dim)),
             Value::Vector(v, dim) => (Value::Vector(v, Dim::NONE), unit(dim)),

@@ -89,12 +89,12 @@ impl Cx<'_> {
             Some((keyword, line)) => format!("did you mean `{near}` ({keyword}, line {line})?"),
             None => format!("did you mean `{near}`?"),
         };
-        diagnostic.notes.extend(lookalikes::difference(self.names.text(unknown.name), near));
+        diagnostic.notes.extend(lookalikes::difference(self.program.names.text(unknown.name), near));
     }
 
     /// Help that takes a script of that name for a module, where there is one.
     fn offer_script(&self, diagnostic: &mut Diagnostic, unknown: &Unknown) {
-        let name = self.names.text(unknown.name);
+        let name = self.program.names.text(unknown.name);
         let is_file = || self.files.resolve(&self.machine.at(unknown.of).path, &format!("{name}.loft")).is_ok();
         let Some(label) = diagnostic.labels.first() else { return };
         if matches!(unknown.among, Among::Values(_)) && is_file() {
@@ -106,24 +106,24 @@ impl Cx<'_> {
 
     /// The nearest name, and the number of those compared.
     fn near_name(&self, unknown: &Unknown) -> (Near, usize) {
-        let (m, text) = (self.machine.at(unknown.of), self.names.text(unknown.name));
+        let (m, text) = (self.machine.at(unknown.of), self.program.names.text(unknown.name));
         let declared = m.script.declarations.iter();
         let named = |names: &[&str]| (meant(text, names.iter().copied()).map(|near| (near.to_owned(), None)), names.len());
         match &unknown.among {
-            Among::Members => named(&m.names().map(|n| self.names.text(n)).collect::<Vec<_>>()),
+            Among::Members => named(&m.names().map(|n| self.program.names.text(n)).collect::<Vec<_>>()),
             Among::Functions => {
-                let own = declared.filter(|d| d.keyword == Keyword::Fn).filter_map(bound).map(|b| self.names.text(b.name));
+                let own = declared.filter(|d| d.keyword == Keyword::Fn).filter_map(bound).map(|b| self.program.names.text(b.name));
                 named(&std::builtins().chain(std::fields()).map(|b| b.name).chain(own).collect::<Vec<_>>())
             }
             Among::Values(locals) => {
                 let values = declared.filter(|d| d.keyword != Keyword::Fn).filter_map(|d| bound(d).map(|b| (d, b)));
                 let words = ["true", "false", "none", "pi"].into_iter().filter(|w| w.eq_ignore_ascii_case(text));
-                let names = words.chain(locals.iter().map(|n| self.names.text(*n)));
+                let names = words.chain(locals.iter().map(|n| self.program.names.text(*n)));
                 let mut names: Vec<&str> = names.collect();
-                names.extend(values.clone().map(|v| self.names.text(v.1.name)));
+                names.extend(values.clone().map(|v| self.program.names.text(v.1.name)));
                 let near = nearest(text, names.iter().copied()).map(|near| {
-                    let mut places = values.filter(|v| self.names.text(v.1.name) == near);
-                    let line = |at: u32| self.sources.place(m.file, at).map_or(1, |p| p.line);
+                    let mut places = values.filter(|v| self.program.names.text(v.1.name) == near);
+                    let line = |at: u32| self.program.sources.place(m.file, at).map_or(1, |p| p.line);
                     (near.to_owned(), places.next().map(|(d, b)| (keyword_word(d.keyword), line(b.span.start))))
                 });
                 (near, names.len())

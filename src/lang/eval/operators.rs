@@ -5,7 +5,8 @@ use glam::DVec3;
 use crate::base::limits;
 use crate::lang::diag::span::Span;
 use crate::lang::eval::bind::Blame;
-use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::halt::Halt;
 use crate::lang::eval::machine::Code;
 use crate::lang::eval::room::LIST_COST;
 use crate::lang::syntax::ast::{Binary, Expr, ExprId};
@@ -100,7 +101,7 @@ impl Cx<'_> {
                 let blame = Blame { items: sides.clone(), whole: sides };
                 let mut diagnostic = self.locate(&fault, at.code, at.code.span(at.id), &blame);
                 self.advise(&fault, (at.code, at.id), &blame, &mut diagnostic);
-                self.sink.push(diagnostic);
+                self.sink.reports.push(diagnostic);
                 Halt::Failed
             }
             other => other,
@@ -329,7 +330,7 @@ impl Cx<'_> {
     /// Where the sum of an empty list was made, and its text: the operand itself, or what the name that it is was declared as.
     fn empty_sum(&self, code: Code<'_>, id: ExprId, value: f64) -> Option<(Span, String)> {
         let is_sum = |nodes: &[crate::lang::syntax::ast::Node], id: ExprId| match &nodes[id.index()].expr {
-            Expr::Call { name, args, .. } => self.names.text(*name) == "sum" && args.iter().all(|a| a.name.is_none()),
+            Expr::Call { name, args, .. } => self.program.names.text(*name) == "sum" && args.iter().all(|a| a.name.is_none()),
             _ => false,
         };
         if value != 0.0 {
@@ -344,7 +345,7 @@ impl Cx<'_> {
         match &declaration.kind {
             crate::lang::syntax::ast::DeclarationKind::Value { value, .. } if is_sum(&declaration.nodes, *value) => {
                 let span = declaration.nodes[value.index()].span;
-                Some((span, self.sources.text(module.file, span).to_owned()))
+                Some((span, self.program.sources.text(module.file, span).to_owned()))
             }
             _ => None,
         }
@@ -426,7 +427,7 @@ impl Cx<'_> {
 
     /// The text of an expression.
     pub(crate) fn source(&self, code: Code<'_>, id: ExprId) -> String {
-        self.sources.text(self.machine.at(code.module).file, code.span(id)).to_owned()
+        self.program.sources.text(self.machine.at(code.module).file, code.span(id)).to_owned()
     }
 
     /// `a == b within t`.
@@ -471,7 +472,7 @@ impl Cx<'_> {
         } else if t.dim == difference.dim || is_zero(code, tolerance) {
             t.value
         } else if t.dim.is_none() && difference.dim.is_length_power() {
-            t.value * crate::lang::values::units::convert(1.0, self.machine.at(code.module).unit, self.unit, difference.dim.length)
+            t.value * crate::lang::values::units::convert(1.0, self.machine.at(code.module).unit, self.program.unit, difference.dim.length)
         } else {
             let (found, wanted) = (dim_words(t.dim), dim_words(difference.dim));
             let draft =

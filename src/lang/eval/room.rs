@@ -7,7 +7,8 @@ use std::sync::Arc;
 
 use crate::base::fault::ValueFault;
 use crate::base::limits;
-use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::halt::Halt;
 use crate::lang::eval::machine::Code;
 use crate::lang::syntax::ast::ExprId;
 use crate::lang::values::value::Value;

@@ -9,7 +9,8 @@ use crate::base::fault::{Fault, Say};
 use crate::base::math::compare_points;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
-use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::halt::Halt;
 use crate::lang::eval::module::State;
 use crate::lang::eval::stages;
 use crate::lang::syntax::ast::Keyword;
@@ -158,7 +159,7 @@ impl Cx<'_> {
 
     /// The place of a surface in the `let` whose expression made it.
     fn place_in_let(&self, surface: &Surface) -> Option<String> {
-        let place = self.outermost(self.origins.place(surface.origin())?);
+        let place = self.outermost(self.program.origins.place(surface.origin())?);
         let module = self.machine.at(place.module);
         let declaration = module.script.declarations.get(place.declaration as usize)?;
         let State::Done(value) = &module.states[place.declaration as usize] else { return None };
@@ -169,7 +170,7 @@ impl Cx<'_> {
             let same = path_of(value, &|other| other.is(one));
             same.or_else(|| path_of(value, &|other| side_of(other, one).is_some()))
         });
-        Some(format!("{}{}", self.names.text(bound(declaration)?.name), found?))
+        Some(format!("{}{}", self.program.names.text(bound(declaration)?.name), found?))
     }
 }
 

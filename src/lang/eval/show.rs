@@ -49,7 +49,7 @@ impl Cx<'_> {
             Value::Record(r) if r.part.is_some() => r.part.as_ref().map_or_else(String::new, |part| part.name.to_string()),
             Value::Record(r) => {
                 let parts: Vec<String> =
-                    r.keys.iter().zip(&r.values).map(|(k, v)| format!("{}: {}", self.names.text(*k), inside(v))).collect();
+                    r.keys.iter().zip(&r.values).map(|(k, v)| format!("{}: {}", self.program.names.text(*k), inside(v))).collect();
                 format!("{{{}}}", parts.join(", "))
             }
             Value::Curve(c) => self.entity(c.origin(), "curve"),
@@ -83,11 +83,11 @@ impl Cx<'_> {
 
     /// A quantity as shortest number and unit.
     pub fn quantity(&self, q: Quantity) -> String {
-        quantity_text(q, self.unit)
+        quantity_text(q, self.program.unit)
     }
 
     fn vector(&self, v: DVec3, dim: Dim) -> String {
-        let unit = unit_text(dim, self.unit);
+        let unit = unit_text(dim, self.program.unit);
         let part = |x: f64| format!("{}{unit}", number_text(x));
         format!("({}, {}, {})", part(v.x), part(v.y), part(v.z))
     }

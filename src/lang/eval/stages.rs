@@ -8,10 +8,12 @@ use crate::base::fault::Fault;
 use crate::base::limits::WORK_OF_AN_ELEMENT;
 use crate::base::origin::Origin;
 use crate::base::work;
-use crate::lang::eval::context::{Cx, Declared, Halt, Parts, Sound};
+use crate::lang::eval::context::Cx;
 use crate::lang::eval::faults::member_name;
+use crate::lang::eval::halt::Halt;
 use crate::lang::eval::machine::Code;
 use crate::lang::eval::module::{Module, Stage, State};
+use crate::lang::eval::pipeline::{Declared, Parts, Sound};
 use crate::lang::syntax::ast::bound;
 use crate::lang::syntax::ast::{DeclarationKind, Keyword};
 use crate::lang::values::origins::NO_MEMBER;
@@ -89,7 +91,7 @@ pub(crate) fn each_member(module: &Module, names: &Names, keywords: &[Keyword], 
 pub(crate) fn gather(cx: &mut Cx, module: ModuleId) -> Parts {
     let mut parts = Parts::default();
     let mut points: Vec<Found<DVec3>> = Vec::new();
-    each_member(cx.machine.at(module), &cx.names, GEOMETRY, &mut |i, keyword, member, name, value| match (keyword, value) {
+    each_member(cx.machine.at(module), &cx.program.names, GEOMETRY, &mut |i, keyword, member, name, value| match (keyword, value) {
         (Keyword::Point, Value::Vector(p, _)) => points.push((i, member, name, *p)),
         (Keyword::Curve, Value::Curve(c)) => parts.curves.push(Declared { name, origin: c.origin(), value: c.clone() }),
         (Keyword::ModelingCurve, Value::Curve(c)) => parts.modeling.push(Declared { name, origin: c.origin(), value: c.clone() }),
@@ -156,7 +158,7 @@ pub(crate) fn groups(cx: &mut Cx, module: ModuleId) -> Result<Vec<Declared<Vec<V
     let missing = all_sound(cx, module, &[Keyword::Group])?;
     lacking(cx, module, missing);
     let mut found: Vec<Found<Vec<Value>>> = Vec::new();
-    each_member(cx.machine.at(module), &cx.names, &[Keyword::Group], &mut |i, _, member, name, value| {
+    each_member(cx.machine.at(module), &cx.program.names, &[Keyword::Group], &mut |i, _, member, name, value| {
         if let Value::List(items) = value {
             found.push((i, member, name, items.to_vec()));
         }
@@ -172,7 +174,7 @@ pub(crate) fn groups(cx: &mut Cx, module: ModuleId) -> Result<Vec<Declared<Vec<V
 pub(crate) fn shells(cx: &mut Cx, module: ModuleId) -> Result<Vec<Declared<Arc<ShellValue>>>, Halt> {
     all_sound(cx, module, &[Keyword::Shell])?;
     let mut found = Vec::new();
-    each_member(cx.machine.at(module), &cx.names, &[Keyword::Shell], &mut |_, _, _, name, value| {
+    each_member(cx.machine.at(module), &cx.program.names, &[Keyword::Shell], &mut |_, _, _, name, value| {
         if let Value::Shell(s) = value {
             found.push(Declared { name, origin: s.origin, value: s.clone() });
         }
@@ -195,10 +197,10 @@ fn once<T: Clone>(
         Some(stage) => *stage = Stage::Running,
     }
     // What a stage says is its own, whichever declaration asked first.
-    let sink = std::mem::take(&mut cx.sink);
+    let sink = std::mem::take(&mut cx.sink.reports);
     let job = cx.job;
     let made = job.watch(|| work::uncharged(|| make(cx))).unwrap_or_else(|fault| Err(fault.into()));
-    let said = std::mem::replace(&mut cx.sink, sink);
+    let said = std::mem::replace(&mut cx.sink.reports, sink);
     cx.machine.filed.extend(said.into_iter().map(|d| (None, d)));
     let (stage, result) = match made {
         Ok(made) => (Stage::Done(made.clone()), Ok(made)),
@@ -238,9 +240,9 @@ pub(crate) fn sound(cx: &mut Cx, module: ModuleId) -> Result<Sound, Halt> {
 fn gathered(cx: &mut Cx, module: ModuleId) -> Result<Sound, Halt> {
     let parts = Arc::new(gather(cx, module));
     // What is odd about a part of the curves may be right with the rest.
-    let sink = std::mem::take(&mut cx.sink);
+    let sink = std::mem::take(&mut cx.sink.reports);
     let network = network(cx, module).or_else(|_| cx.pipeline.network(cx, module, &parts));
-    cx.sink = sink;
+    cx.sink.reports = sink;
     let stands = network.is_ok();
     let network = network.unwrap_or_default();
     let model = cx.pipeline.model(cx, module, (&parts, network.clone())).map_err(|_| Halt::Broken)?;

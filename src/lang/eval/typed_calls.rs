@@ -32,17 +32,17 @@ impl Cx<'_> {
             let place = d.labels.first().is_some_and(|l| l.file == file && spans.contains(&l.span));
             place && d.fixes.is_empty() && matches!(d.code.0, "E211" | "E301" | "E302" | "E304" | "E402")
         };
-        if self.sink.len() <= said || !self.sink[said..].iter().all(about) {
+        if self.sink.reports.len() <= said || !self.sink.reports[said..].iter().all(about) {
             return;
         }
-        let reports = self.sink.split_off(said);
+        let reports = self.sink.reports.split_off(said);
         let typed = self.values_of(code, args).and_then(|values| self.typed_call(code, builtin, args, &values));
-        self.sink.truncate(said);
+        self.sink.reports.truncate(said);
         match (typed, reports.split_first()) {
             (Some((why, typed)), Some((first, _))) => {
-                self.sink.push(first.clone().help(format!("{why}: `{typed}`")).put(code.span(id), typed));
+                self.sink.reports.push(first.clone().help(format!("{why}: `{typed}`")).put(code.span(id), typed));
             }
-            _ => self.sink.extend(reports),
+            _ => self.sink.reports.extend(reports),
         }
     }
 
@@ -65,7 +65,7 @@ impl Cx<'_> {
                 return None;
             }
             let rest = args[listed..].iter().zip(&sources[listed..]);
-            let rest: String = rest.filter_map(|(a, s)| a.name.map(|(n, _)| format!(", {}: {s}", self.names.text(n)))).collect();
+            let rest: String = rest.filter_map(|(a, s)| a.name.map(|(n, _)| format!(", {}: {s}", self.program.names.text(n)))).collect();
             return Some((LISTED, format!("{}([{}]{rest})", builtin.name, sources[..listed].join(", "))));
         }
         self.named_call(code, builtin, (args, &sources), values).map(|typed| (NAMED, typed))
@@ -78,7 +78,7 @@ impl Cx<'_> {
         for ((arg, value), source) in args.iter().zip(values).zip(sources) {
             let place = match arg.name {
                 Some((name, _)) => {
-                    let name = self.names.text(name);
+                    let name = self.program.names.text(name);
                     let k = builtin.params.iter().position(|p| p.name == name)?;
                     (k, self.fitting(code, value, builtin.params[k].ty, source)?)
                 }
@@ -120,14 +120,14 @@ impl Cx<'_> {
     /// What is typed for a call of another tool's shape: the expression in its place, or the declaration with what it is made of.
     pub(crate) fn typed_shape(&self, code: Code<'_>, id: ExprId) -> Option<(Span, String)> {
         let Expr::Call { name, args, of: None, .. } = code.expr(id) else { return None };
-        let args = args.iter().map(|a| (a.name.map(|(n, _)| self.names.text(n).to_owned()), self.source(code, a.value)));
-        let made = shape(&Call { name: self.names.text(*name).to_owned(), args: args.collect() })?;
+        let args = args.iter().map(|a| (a.name.map(|(n, _)| self.program.names.text(n).to_owned()), self.source(code, a.value)));
+        let made = shape(&Call { name: self.program.names.text(*name).to_owned(), args: args.collect() })?;
         if let Made::Solid { .. } = made {
             let declaration = &self.machine.at(code.module).script.declarations[code.declaration as usize];
             let DeclarationKind::Value { bound, family, value } = &declaration.kind else { return None };
             let whole = *value == id && family.is_empty();
             let span = Span { start: declaration.keyword_span.start, ..declaration.span };
-            return made.declared(self.names.text(bound.name), "").filter(|_| whole).map(|typed| (span, typed));
+            return made.declared(self.program.names.text(bound.name), "").filter(|_| whole).map(|typed| (span, typed));
         }
         Some((code.span(id), made.expression()))
     }

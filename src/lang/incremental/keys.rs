@@ -44,25 +44,25 @@ impl Cx<'_> {
     pub(crate) fn settle_in(&mut self, module: ModuleId, label: &str) {
         let script = self.machine.at(module).script.clone();
         let Some(mut memory) = self.memory.take() else {
-            let homes: Vec<Home> = script.declarations.iter().map(|_| self.origins.new_home()).collect();
-            return self.origins.enter(module, homes);
+            let homes: Vec<Home> = script.declarations.iter().map(|_| self.program.origins.new_home()).collect();
+            return self.program.origins.enter(module, homes);
         };
         memory.enter(module, label);
         let file = self.machine.at(module).file;
-        let text = self.sources.get(file).map_or("", |s| &s.text);
+        let text = self.program.sources.get(file).map_or("", |s| &s.text);
         let tokens = token_keys(text, &script.declarations);
         let mut nameless: BTreeMap<Digest, u64> = BTreeMap::new();
         let homes = script.declarations.iter().zip(&tokens).map(|(declaration, tokens)| {
             let identity = StableHasher::new("home").text(label);
             let identity = match bound(declaration) {
-                Some(b) => identity.text(self.names.text(b.name)),
+                Some(b) => identity.text(self.program.names.text(b.name)),
                 None => {
                     let nth = nameless.entry(*tokens).or_default();
                     *nth += 1;
                     identity.digest(*tokens).number(*nth)
                 }
             };
-            memory.home(identity.finish(), &mut self.origins)
+            memory.home(identity.finish(), &mut self.program.origins)
         });
         let mut homes: Vec<Home> = homes.collect();
         // Of two declarations of one name the second failed; it must not pass for the first.
@@ -72,11 +72,11 @@ impl Cx<'_> {
             let mut seen = BTreeSet::new();
             homes.iter_mut().for_each(|home| {
                 if !seen.insert(*home) {
-                    *home = self.origins.new_home();
+                    *home = self.program.origins.new_home();
                 }
             });
         }
-        self.origins.enter(module, homes);
+        self.program.origins.enter(module, homes);
         self.machine.at_mut(module).tokens = tokens;
         self.memory = Some(memory);
     }
@@ -136,7 +136,7 @@ impl Cx<'_> {
     /// The digest of a declaration's text.
     pub(crate) fn text_key(&self, module: ModuleId, index: u32) -> Digest {
         let m = self.machine.at(module);
-        StableHasher::new("text").text(self.sources.text(m.file, m.script.declarations[index as usize].span)).finish()
+        StableHasher::new("text").text(self.program.sources.text(m.file, m.script.declarations[index as usize].span)).finish()
     }
 
     /// The key, or one with the text in it where what is kept under the key depends on another text.
@@ -155,7 +155,7 @@ impl Cx<'_> {
         let m = self.machine.at(module);
         let script = m.script.clone();
         let declaration = &script.declarations[index as usize];
-        let own = StableHasher::new(env!("CARGO_PKG_VERSION")).text(self.unit.name).text(m.unit.name).text(&m.label);
+        let own = StableHasher::new(env!("CARGO_PKG_VERSION")).text(self.program.unit.name).text(m.unit.name).text(&m.label);
         let own = own.digest(*m.tokens.get(index as usize)?);
         Some(match &declaration.kind {
             DeclarationKind::Param { bound, .. } => match m.given.iter().rev().find(|g| g.0 == bound.name) {
@@ -185,7 +185,7 @@ impl Cx<'_> {
             return None;
         }
         let text = String::from_utf8(bytes).ok()?;
-        let (script, _) = syntax::parse(&text, FileId(u32::MAX), &mut self.names);
+        let (script, _) = syntax::parse(&text, FileId(u32::MAX), &mut self.program.names);
         script
             .declarations
             .iter()

@@ -17,8 +17,8 @@ impl Cx<'_> {
     /// Works with what earlier runs found; to be called before [`Cx::load`].
     pub fn recall_from(&mut self, mut memory: Memory) {
         memory.begin();
-        self.names = std::mem::take(&mut memory.names);
-        self.origins = std::mem::take(&mut memory.origins);
+        self.program.names = std::mem::take(&mut memory.names);
+        self.program.origins = std::mem::take(&mut memory.origins);
         self.memory = Some(memory);
     }
 
@@ -26,8 +26,8 @@ impl Cx<'_> {
     pub fn into_memory(mut self) -> Memory {
         let mut memory = self.memory.take().unwrap_or_default();
         memory.end();
-        memory.names = self.names;
-        memory.origins = self.origins;
+        memory.names = self.program.names;
+        memory.origins = self.program.origins;
         memory
     }
 

@@ -8,9 +8,11 @@ use crate::base::fault::{Say, Severity};
 use crate::base::tolerance::{EPSILON, Tolerance};
 use crate::lang::diag::diagnostic;
 use crate::lang::diag::diagnostic::Diagnostic;
-use crate::lang::eval::context::{Cx, Halt, SAID_JUST_NOW};
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::halt::Halt;
 use crate::lang::eval::machine::Code;
 use crate::lang::eval::module::{Stage, State};
+use crate::lang::eval::sink::SAID_JUST_NOW;
 use crate::lang::eval::stages;
 use crate::lang::syntax::ast::bound;
 use crate::lang::syntax::ast::{DeclarationKind, ExprId, Keyword};
@@ -52,7 +54,7 @@ impl Cx<'_> {
     /// Parses the main script. What is wrong with it is found in [`Cx::finish`].
     pub fn load(&mut self, entry: &Entry) {
         let main = self.add_module(entry.name, entry.path, entry.text.into(), (String::new(), None));
-        self.unit = self.machine.at(main).unit;
+        self.program.unit = self.machine.at(main).unit;
         self.give_all(main, entry.sets, entry.row);
     }
 
@@ -137,7 +139,7 @@ impl Cx<'_> {
                 }
             }
         }
-        let said = std::mem::take(&mut self.sink);
+        let said = std::mem::take(&mut self.sink.reports);
         self.machine.filed.extend(said.into_iter().map(|d| (Some((module, index)), d)));
         (out.len() == values.len()).then_some(out)
     }
@@ -167,7 +169,7 @@ impl Cx<'_> {
     fn fix_tolerance(&mut self, said: Option<Said>) {
         let (diagonal, furthest) = (self.seen.diagonal(), self.seen.furthest());
         let Some(Said { point, angle, at: (index, expr) }) = said else {
-            let fallback = units::convert(FALLBACK_MM, units::MILLIMETRE, self.unit, 1);
+            let fallback = units::convert(FALLBACK_MM, units::MILLIMETRE, self.program.unit, 1);
             self.tolerance = Some(Tolerance::from_diagonal(diagonal, fallback).at_distance(furthest));
             return;
         };
@@ -182,7 +184,7 @@ impl Cx<'_> {
             let (size, reaches) = if is_far { (furthest, "from the origin") } else { (diagonal, "across") };
             let why = format!("the model is {} {reaches}, and rounding moves its points by up to 1e-14 of that", self.length(size));
             self.error(code, "E306", text, code.span(expr), found).note(why).say();
-            let said = std::mem::take(&mut self.sink);
+            let said = std::mem::take(&mut self.sink.reports);
             self.machine.filed.extend(said.into_iter().map(|d| (Some((ModuleId::MAIN, index)), d)));
             tolerance = Tolerance::new(least, diagonal).at_distance(furthest);
         }
@@ -191,7 +193,7 @@ impl Cx<'_> {
 
     /// Everything said, in order of place: what was skipped is noted at its cause, equal reports are counted.
     pub fn finish(&mut self) -> Vec<Diagnostic> {
-        let rest = std::mem::take(&mut self.sink);
+        let rest = std::mem::take(&mut self.sink.reports);
         self.machine.filed.extend(rest.into_iter().map(|d| (None, d)));
         self.idle_tolerances();
         let (skipped, unmeshed, without) = (self.skipped(), self.unmeshed(), self.meshed_without());
@@ -210,7 +212,7 @@ impl Cx<'_> {
                 diagnostic.notes.extend(without.get(&owner).map(|names| told(&format!("meshed without `{}`", name()), names)));
             }
             match out.iter_mut().rev().take(SAID_JUST_NOW).find(|d| d.is_like(&diagnostic)) {
-                Some(found) => found.fold(diagnostic, self.whole),
+                Some(found) => found.fold(diagnostic, self.sink.whole),
                 None => out.push(diagnostic),
             }
         }
@@ -231,7 +233,7 @@ impl Cx<'_> {
                 }
             }
         }
-        let said = std::mem::take(&mut self.sink);
+        let said = std::mem::take(&mut self.sink.reports);
         self.machine.filed.extend(said.into_iter().map(|d| (None, d)));
     }
 
@@ -299,12 +301,12 @@ impl Cx<'_> {
 
     /// Whether anything said so far is an error.
     pub fn has_errors(&self) -> bool {
-        self.machine.filed.iter().map(|f| &f.1).chain(&self.sink).any(|d| d.severity() == Severity::Error)
+        self.machine.filed.iter().map(|f| &f.1).chain(&self.sink.reports).any(|d| d.severity() == Severity::Error)
     }
 
     /// Whether anything said so far is a warning.
     pub fn has_warnings(&self) -> bool {
-        self.machine.filed.iter().map(|f| &f.1).chain(&self.sink).any(|d| d.severity() == Severity::Warning)
+        self.machine.filed.iter().map(|f| &f.1).chain(&self.sink.reports).any(|d| d.severity() == Severity::Warning)
     }
 
     /// The tolerance that was fixed, for showing it.
@@ -342,7 +344,7 @@ impl Cx<'_> {
     pub fn mesh_values(&self) -> Vec<(Arc<str>, crate::lang::values::value::MeshValue)> {
         let mut out = Vec::new();
         if let Some(module) = self.machine.modules.first() {
-            stages::each_member(module, &self.names, &[Keyword::Mesh], &mut |_, _, _, name, value| {
+            stages::each_member(module, &self.program.names, &[Keyword::Mesh], &mut |_, _, _, name, value| {
                 if let Value::Mesh(mesh) = value {
                     out.push((name, (**mesh).clone()));
                 }
@@ -354,7 +356,7 @@ impl Cx<'_> {
     /// The value of a name of the main script; `None` when it has none or failed.
     pub fn value_of(&self, name: &str) -> Option<Value> {
         let module = self.machine.modules.first()?;
-        match &module.states[module.find(self.names.find(name)?)? as usize] {
+        match &module.states[module.find(self.program.names.find(name)?)? as usize] {
             State::Done(value) => Some(value.clone()),
             _ => None,
         }

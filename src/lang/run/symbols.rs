@@ -63,7 +63,7 @@ impl Cx<'_> {
         let symbol = |(declaration, state): (&crate::lang::syntax::ast::Declaration, &State)| {
             let bound = bound(declaration);
             Symbol {
-                name: bound.map(|b| self.names.text(b.name).to_owned()),
+                name: bound.map(|b| self.program.names.text(b.name).to_owned()),
                 keyword: declaration.keyword,
                 file: module.file,
                 span: declaration.span,
@@ -74,7 +74,7 @@ impl Cx<'_> {
                     State::Failed => Condition::Failed,
                     _ => Condition::Skipped,
                 },
-                shape: if let State::Done(value) = state { Shape::of_value(value, &self.names) } else { Shape::Unknown },
+                shape: if let State::Done(value) = state { Shape::of_value(value, &self.program.names) } else { Shape::Unknown },
                 needs: self.needs(ModuleId::MAIN, declaration),
             }
         };
@@ -87,7 +87,7 @@ impl Cx<'_> {
     pub fn describe_name(&mut self, name: &str) -> Option<String> {
         let value = self.value_of(name)?;
         let module = self.machine.modules.first()?;
-        let index = module.find(self.names.find(name)?)?;
+        let index = module.find(self.program.names.find(name)?)?;
         let word = crate::lang::eval::later::keyword_word(module.script.declarations[index as usize].keyword);
         let about = self.describe(&value);
         Some(if about.is_empty() { format!("{word} {name}") } else { format!("{word} {name}: {about}") })
@@ -123,12 +123,12 @@ impl Cx<'_> {
             },
             Value::Table(table) => {
                 let rows = counted(table.rows.len(), "row", "rows");
-                let names: Vec<&str> = table.keys.iter().map(|k| self.names.text(*k)).collect();
+                let names: Vec<&str> = table.keys.iter().map(|k| self.program.names.text(*k)).collect();
                 if names.is_empty() { format!("table, {rows}") } else { format!("table, {rows} of {}", names.join(", ")) }
             }
             Value::Module(id) => {
                 let module = self.machine.at(*id);
-                let names: Vec<&str> = module.names().map(|n| self.names.text(n)).collect();
+                let names: Vec<&str> = module.names().map(|n| self.program.names.text(n)).collect();
                 format!("module with {}", names.join(", "))
             }
             Value::Network(id) => match self.network(*id) {
@@ -191,7 +191,7 @@ impl Cx<'_> {
     /// A measured value in few digits with its unit.
     pub fn measured(&self, x: f64, dim: Dim) -> String {
         let rounded: f64 = format!("{x:.*e}", DIGITS - 1).parse().unwrap_or(x);
-        let unit = unit_text(dim, self.unit);
+        let unit = unit_text(dim, self.program.unit);
         format!("{} {unit}", units::number_text(rounded))
     }
 }

@@ -42,7 +42,7 @@ impl Cx<'_> {
             let waits = |(of, d): (ModuleId, u32)| Why::Waits(self.declaration_name(of, d));
             let mut here: Vec<Unmade> = Vec::new();
             for broken in &module.script.broken {
-                let name = self.names.text(broken.name).to_owned();
+                let name = self.program.names.text(broken.name).to_owned();
                 here.push(Unmade { name, what: String::new(), file: module.file, span: broken.span, why: Why::Failed });
             }
             for (i, (declaration, state)) in module.script.declarations.iter().zip(&module.states).enumerate() {
@@ -53,7 +53,7 @@ impl Cx<'_> {
                     State::Broken => Why::Unread,
                     State::Waiting | State::Running | State::Suspended | State::Done(_) => continue,
                 };
-                let what = self.sources.text(module.file, declaration.keyword_span).to_owned();
+                let what = self.program.sources.text(module.file, declaration.keyword_span).to_owned();
                 let name = self.declaration_name(own, i as u32);
                 let name = if bound(declaration).is_some() { name } else { unworded(&name, &what) };
                 here.push(Unmade { name, what, file: module.file, span: declaration.span, why });

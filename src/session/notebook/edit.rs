@@ -201,7 +201,7 @@ pub(super) fn outputs(cx: &Cx<'_>, entered: &[&str]) -> Vec<Part> {
     let symbols = cx.symbols();
     let own = |keyword: Keyword| {
         let of_kind = symbols.iter().filter(move |s| s.keyword == keyword);
-        of_kind.map(|s| entered.contains(&cx.sources.text(s.file, s.span))).collect::<Vec<bool>>()
+        of_kind.map(|s| entered.contains(&cx.program.sources.text(s.file, s.span))).collect::<Vec<bool>>()
     };
     let (own_checks, own_reports) = (own(Keyword::Check), own(Keyword::Report));
     // One `check … for` gives several results; with any of those all results are shown.

@@ -1,7 +1,8 @@
 //! How a name of the model came about: its statement, what it stands on, how it was ordered, counted and meshed.
 
 use super::{Answer, Notebook, Part};
-use crate::lang::eval::context::{Cx, Sound};
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::pipeline::Sound;
 use crate::lang::values::value::{ModuleId, Value};
 use crate::network::Network;
 use crate::session::live::Depth;

@@ -4,7 +4,8 @@ use glam::DVec3;
 
 use super::{Answer, Notebook, Part};
 use crate::base::tolerance::Tolerance;
-use crate::lang::eval::context::{Cx, Parts};
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::pipeline::Parts;
 use crate::lang::values::value::{ModuleId, Value};
 use crate::network::{LinkId, Network};
 use crate::session::collect;

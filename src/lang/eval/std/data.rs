@@ -5,7 +5,8 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use crate::base::fault::ValueFault;
-use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::halt::Halt;
 use crate::lang::values::table::Table;
 use crate::lang::values::value::{Dim, Value};
 use crate::{builtins, fields};
@@ -87,13 +88,13 @@ builtins! {
             }
             other => {
                 let text = cx.show(other);
-                cx.names.find(&text).and_then(|id| table.keys.iter().position(|k| *k == id))
+                cx.program.names.find(&text).and_then(|id| table.keys.iter().position(|k| *k == id))
             }
         };
         match place {
             Some(k) => Ok(table.rows.iter().map(|r| r.item(k).unwrap_or_default()).collect()),
             None => {
-                let names: Vec<&str> = table.keys.iter().map(|k| cx.names.text(*k)).collect();
+                let names: Vec<&str> = table.keys.iter().map(|k| cx.program.names.text(*k)).collect();
                 let range = if names.is_empty() { "a place inside the rows".to_owned() } else { format!("one of {}", names.join(", ")) };
                 Err(ValueFault::OutsideRange { argument: "name", found: cx.show_inside(&name), range }.into())
             }

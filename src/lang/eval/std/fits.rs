@@ -3,7 +3,8 @@
 use crate::base::fault::ValueFault;
 use crate::builtins;
 use crate::geometry::fit::{Fit, fit};
-use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::halt::Halt;
 use crate::lang::eval::std::curves::{places, unit, whole};
 use crate::lang::eval::std::surfaces::{finished, rows};
 use crate::lang::values::types::{Angle, Direction, FromValue, Length, Point, Ty};

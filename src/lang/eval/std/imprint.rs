@@ -2,7 +2,8 @@
 
 use crate::base::origin::Origin;
 use crate::builtins;
-use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::halt::Halt;
 use crate::lang::eval::std::kinds::SurfaceOrShell;
 use crate::lang::values::types::Rest;
 use crate::model::topology::Named;

@@ -3,7 +3,8 @@
 use crate::base::bbox::Box3;
 use crate::base::fault::{Say, SurfaceFault, ValueFault};
 use crate::base::tolerance::Tolerance;
-use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::halt::Halt;
 use crate::lang::eval::scene::Scene;
 use crate::lang::eval::std::kinds::{EdgeOf, EdgeOrSurface, Faces};
 use crate::lang::values::types::{Angle, Length};

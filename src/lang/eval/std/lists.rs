@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use crate::base::fault::ValueFault;
 use crate::builtins;
-use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::halt::Halt;
 use crate::lang::eval::operators::same;
 use crate::lang::values::types::{Rest, dim_words};
 use crate::lang::values::value::Value;
@@ -42,7 +43,7 @@ fn keys(cx: &mut Cx, list: &[Value], key: &Value) -> Result<Vec<Value>, Halt> {
     match key {
         Value::None => Ok(list.to_vec()),
         Value::Text(name) | Value::Word(name) => {
-            let id = cx.names.find(name);
+            let id = cx.program.names.find(name);
             let field = |v: &Value| match v {
                 Value::Record(r) => id.and_then(|id| r.get(id)).cloned(),
                 Value::Vector(p, dim) => match &**name {

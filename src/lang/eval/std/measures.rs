@@ -6,7 +6,8 @@ use glam::DVec3;
 
 use crate::base::bbox::Box3;
 use crate::base::fault::ValueFault;
-use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::halt::Halt;
 use crate::lang::eval::std::kinds::PatchOf;
 use crate::lang::values::types::{Area, Point, Volume};
 use crate::lang::values::value::{MeshValue, ShellValue, Value};

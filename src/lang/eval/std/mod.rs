@@ -30,7 +30,8 @@ pub mod transforms;
 pub mod vectors;
 pub mod walls;
 
-use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::halt::Halt;
 use crate::lang::values::types::Ty;
 use crate::lang::values::value::Value;
 
@@ -187,7 +188,7 @@ macro_rules! builtin_table {
                 let mut args = args.into_iter();
                 $( let $p = $crate::lang::eval::std::take::<$ty>(&mut args)?; )*
                 let _ = args;
-                let run: fn(&mut $crate::lang::eval::context::Cx, $($ty),*) -> Result<$ret, $crate::lang::eval::context::Halt> = $body;
+                let run: fn(&mut $crate::lang::eval::context::Cx, $($ty),*) -> Result<$ret, $crate::lang::eval::halt::Halt> = $body;
                 run(cx, $($p),*).map($crate::lang::values::types::IntoValue::into_value)
             },
         } ),+ ];

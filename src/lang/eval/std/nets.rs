@@ -3,7 +3,7 @@
 use crate::base::fault::{Say, ValueFault};
 use crate::base::tolerance::Tolerance;
 use crate::builtins;
-use crate::lang::eval::context::Halt;
+use crate::lang::eval::halt::Halt;
 use crate::lang::eval::std::curves::unit;
 use crate::lang::eval::std::kinds::{EndKind, SectionKind};
 use crate::lang::eval::std::surfaces::finished;

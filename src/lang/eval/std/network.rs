@@ -4,7 +4,8 @@ use glam::DVec3;
 
 use crate::base::fault::ValueFault;
 use crate::base::tolerance::WHOLE_NUMBER;
-use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::halt::Halt;
 use crate::lang::eval::std::kinds::{CurveOrSurface, LinkOf, Meeting, NetworkOf, ThingsOrCurve};
 use crate::lang::values::types::{Length, Node, Point, Station};
 use crate::lang::values::value::Value;

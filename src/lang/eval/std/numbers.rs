@@ -3,7 +3,8 @@
 use crate::base::fault::ValueFault;
 use crate::base::math;
 use crate::builtins;
-use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::halt::Halt;
 use crate::lang::values::types::{Angle, Degrees, Rest, dim_words};
 use crate::lang::values::units::{number_text, radians};
 use crate::lang::values::value::{Dim, Quantity, Value};

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use crate::base::fault::ValueFault;
-use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::halt::Halt;
 use crate::lang::eval::std::measures::box_of;
 use crate::lang::values::part::PartValue;
 use crate::lang::values::types::{Area, Length, Point, Volume};

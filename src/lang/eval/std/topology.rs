@@ -8,7 +8,8 @@ use glam::DVec3;
 use crate::base::bbox::Box3;
 use crate::base::fault::ValueFault;
 use crate::base::origin::Origin;
-use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::halt::Halt;
 use crate::lang::eval::scene::Scene;
 use crate::lang::eval::std::choosing;
 use crate::lang::eval::std::kinds::{Carrier, EdgeKey, EdgeOf, Edged, Faces, PatchOf, VertexOf};
@@ -89,7 +90,7 @@ fn creases(cx: &mut Cx, faces: &Faces, angle: f64) -> Result<Vec<EdgeOf>, Halt> 
 
 /// The box that a record with the points `min` and `max` is.
 fn corners(cx: &mut Cx, value: &Value) -> Result<Box3, Halt> {
-    let (min, max) = (cx.names.intern("min"), cx.names.intern("max"));
+    let (min, max) = (cx.program.names.intern("min"), cx.program.names.intern("max"));
     let point = |value: Option<&Value>| match value {
         Some(Value::Vector(p, _) | Value::Node(p)) => Some(*p),
         _ => None,

@@ -1,7 +1,8 @@
 //! Functions and fields of points and directions.
 
 use crate::base::fault::ValueFault;
-use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::halt::Halt;
 use crate::lang::values::types::{Vector, dim_words};
 use crate::lang::values::value::{Dim, Quantity, Value};
 use crate::{builtins, fields};
