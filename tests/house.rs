@@ -78,7 +78,7 @@ const CEILINGS: &[(&str, usize)] = &[
     ("base", 9_000),
     ("geometry", 5_650),
     ("network", 3_800),
-    ("surface", 25_400),
+    ("surface", 25_750),
     ("model", 6_400),
     ("mesh", 24_300),
     ("io", 16_500),
