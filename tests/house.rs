@@ -20,27 +20,48 @@ const FLOORS: &[(&str, u8)] = &[
 ];
 
 /// Rooms of a floor in their order: each imports only from rooms before it.
-const ROOMS: &[(&str, &[&str])] = &[(
-    "mesh",
-    &[
-        "request",
-        "mapped",
-        "data",
-        "border",
-        "chart",
-        "deviation",
-        "size",
-        "divide",
-        "tri",
-        "quad",
-        "face",
-        "output",
-        "verify",
-        "report",
-        "cache",
-        "pipeline",
-    ],
-)];
+const ROOMS: &[(&str, &[&str])] = &[
+    (
+        "surface",
+        &[
+            "data",
+            "rails",
+            "shapes",
+            "core",
+            "closest",
+            "trims",
+            "points",
+            "blended",
+            "swept",
+            "joined",
+            "analysis",
+            "intersect",
+            "offset",
+            "rolling",
+        ],
+    ),
+    (
+        "mesh",
+        &[
+            "request",
+            "mapped",
+            "data",
+            "border",
+            "chart",
+            "deviation",
+            "size",
+            "divide",
+            "tri",
+            "quad",
+            "face",
+            "output",
+            "verify",
+            "report",
+            "cache",
+            "pipeline",
+        ],
+    ),
+];
 
 /// A crate and the places that may name it.
 const DOORS: &[(&str, &[&str])] = &[

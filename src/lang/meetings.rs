@@ -11,7 +11,10 @@ use crate::base::fault::{CutFault, Fault, ValueFault};
 use crate::base::origin::Origin;
 use crate::network::Chain;
 use crate::network::meet;
-use crate::surface::{Surface, meet as surfaces, plane};
+use crate::surface::Surface;
+use crate::surface::core::plane;
+use crate::surface::intersect::with_curve as surfaces;
+use crate::surface::intersect::with_surfaces;
 
 /// The one place where two things meet; E507, E508, E509 name the candidates.
 pub(super) fn meet_once(cx: &mut Cx, a: &Value, b: &Value) -> Result<Value, Halt> {
@@ -41,7 +44,7 @@ pub(super) fn meet_once(cx: &mut Cx, a: &Value, b: &Value) -> Result<Value, Halt
             None => Err(later(cx, a, b)),
         },
         (x, y) => match (faces(x)?, faces(y)?) {
-            (Some(x), Some(y)) => Ok(Value::Curve(surfaces::with_surfaces_once(&x, &y, cx.origin(), &tolerance)?)),
+            (Some(x), Some(y)) => Ok(Value::Curve(with_surfaces::with_surfaces_once(&x, &y, cx.origin(), &tolerance)?)),
             _ => Err(later(cx, a, b)),
         },
     }
@@ -73,7 +76,7 @@ pub(super) fn meet_all(cx: &mut Cx, a: &Meeting, b: &Meeting) -> Result<Vec<Valu
         }
         (a, b) => match (faces(a)?, faces(b)?) {
             (Some(a), Some(b)) => {
-                Ok(surfaces::with_surfaces(&a, &b, cx.origin(), &tolerance)?.curves.into_iter().map(Value::Curve).collect())
+                Ok(with_surfaces::with_surfaces(&a, &b, cx.origin(), &tolerance)?.curves.into_iter().map(Value::Curve).collect())
             }
             _ => Err(ValueFault::NotInThisVersion { what: MESH.to_owned() }.into()),
         },
@@ -96,7 +99,7 @@ pub(super) fn cutters(cx: &mut Cx, surface: &Surface, by: Vec<Cutter>) -> Result
             Cutter::Shell(shell) => shell.surfaces.clone(),
             Cutter::Plane(p) => vec![plane::unbounded(p.at, p.normal, Origin::NONE)?],
         };
-        let found = surfaces::with_surfaces(::std::slice::from_ref(surface), &faces, cx.origin(), &tolerance)?.curves;
+        let found = with_surfaces::with_surfaces(::std::slice::from_ref(surface), &faces, cx.origin(), &tolerance)?.curves;
         if found.is_empty() {
             let b = faces.first().map_or(Origin::NONE, Surface::origin);
             return Err(Fault::from(CutFault::NoCurve { a: surface.origin(), b, touch: None, tolerance: tolerance.point }).into());

@@ -9,7 +9,7 @@ use crate::base::job;
 use crate::base::quadrature::{self, RUNNING};
 use crate::base::tolerance::{EPSILON, MEASURE_ACCURACY, NEWTON_STEP, Tolerance};
 use crate::network::{Chain, Network};
-use crate::surface::quick::PowerForm;
+use crate::surface::core::power_form::PowerForm;
 use crate::surface::{OneSided, Surface};
 
 /// Halvings of one stretch before its length is taken as it is; the line is cut at kinks, so this is far from reached.
@@ -255,13 +255,12 @@ impl Track {
 mod tests {
     use super::*;
     use crate::base::origin::Origin;
-    use crate::surface::nurbs::{Net, nurbs};
+    use crate::surface::points::control_net::{Net, nurbs};
 
     #[test]
     fn a_short_span_between_knots_counts() {
         let tolerance = Tolerance::new(1e-6, 30.0);
-        let rows: Vec<Vec<DVec3>> =
-            (0..8).map(|j| (0..2).map(|i| DVec3::new(f64::from(i), 3.0 * f64::from(j), 0.0)).collect()).collect();
+        let rows: Vec<Vec<DVec3>> = (0..8).map(|j| (0..2).map(|i| DVec3::new(f64::from(i), 3.0 * f64::from(j), 0.0)).collect()).collect();
         let knots_v = [vec![0.0; 6], vec![0.02, 5.0], vec![10.0; 6]].concat();
         let net = Net { rows: &rows, weights: None };
         let plane = nurbs(&net, (1, 5), (None, Some(&knots_v)), Origin::NONE, &tolerance).unwrap();

@@ -21,7 +21,7 @@ use crate::geometry::composite::Composite;
 use crate::geometry::curve::Shape;
 use crate::geometry::intersect::{Hit, intersect};
 use crate::geometry::{Curve, Kind, Motion, build, closest};
-use crate::surface::revolve::Axis;
+use crate::surface::swept::revolve::Axis;
 
 const TURN: f64 = std::f64::consts::TAU;
 /// Places along a part at which it is compared with others.

@@ -1,5 +1,6 @@
 //! Surfaces of CAD files: exact, with the parameters that the file gives them.
 
+use crate::surface::core::plane;
 use glam::{DAffine3, DVec3};
 
 use super::carry::{carried, carried_pole, check_reach};
@@ -12,8 +13,9 @@ use crate::base::tolerance::{NUDGE, Tolerance};
 use crate::geometry::nurbs::projected;
 use crate::geometry::{Curve, Motion, build};
 use crate::network::Chain;
-use crate::surface::revolve::Axis;
-use crate::surface::{NurbsSurface, Surface, SurfaceKind, extrude, plane, revolve, ruled};
+use crate::surface::swept::revolve::Axis;
+use crate::surface::swept::{extrude, revolve};
+use crate::surface::{NurbsSurface, Surface, SurfaceKind, ruled};
 
 /// A surface of the file in model units; (u, v) are the file's.
 #[derive(Clone, Debug)]

@@ -8,7 +8,7 @@ use crate::base::math::sin_cos;
 use crate::base::tolerance::{PARALLEL, Tolerance};
 use crate::geometry::nurbs::projected;
 use crate::model::Patch;
-use crate::surface::elementary::{Elementary, Form};
+use crate::surface::analysis::elementary::{Elementary, Form};
 use crate::surface::{Domain, NurbsSurface, Off, Side, Surface};
 
 /// Share of the tolerance that a net may be off, where that can be had.

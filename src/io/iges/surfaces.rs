@@ -15,7 +15,7 @@ use crate::io::cad::damage::{Damage, damage};
 use crate::io::cad::face::{self, Border};
 use crate::io::cad::nets::trimmed_net;
 use crate::surface::NurbsSurface;
-use crate::surface::revolve::Axis;
+use crate::surface::swept::revolve::Axis;
 
 impl Book {
     /// The surface that a pointer means, its matrix included.

@@ -11,7 +11,7 @@ use crate::io::cad::damage::{Damage, damage};
 use crate::io::cad::face::Face;
 use crate::io::cad::face_loops::FaceLoops;
 use crate::io::cad::nets::trimmed_net;
-use crate::surface::revolve::Axis;
+use crate::surface::swept::revolve::Axis;
 
 const TURN: f64 = std::f64::consts::TAU;
 

@@ -13,7 +13,7 @@ use crate::io::cad::base::{BEYOND, Base};
 use crate::io::cad::damage::{Damage, damage};
 use crate::io::cad::face::Face;
 use crate::io::cad::face_loops::FaceLoops;
-use crate::surface::revolve::Axis;
+use crate::surface::swept::revolve::Axis;
 
 const TURN: f64 = std::f64::consts::TAU;
 

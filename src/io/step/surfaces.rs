@@ -16,7 +16,7 @@ use crate::io::cad::damage::{Damage, damage};
 use crate::io::cad::face_loops::FaceLoops;
 use crate::io::cad::nets::trimmed_net;
 use crate::surface::NurbsSurface;
-use crate::surface::revolve::Axis;
+use crate::surface::swept::revolve::Axis;
 
 impl Step<'_> {
     /// The surface that an entity is; one without ends reaches about as far as what lies on it.

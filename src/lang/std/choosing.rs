@@ -14,7 +14,7 @@ use crate::lang::scene::Scene;
 use crate::lang::value::Value;
 use crate::model::{SharedEdge, SharedTrack};
 use crate::network::Chain;
-use crate::surface::plane::unbounded;
+use crate::surface::core::plane::unbounded;
 use crate::surface::{Nearest, Surface, chain_breaks, curve_bbox};
 
 /// Places of an edge that are looked at first.

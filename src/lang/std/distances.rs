@@ -1,5 +1,6 @@
 //! Distances and angles between points, curves and faces, and how far points are from a surface.
 
+use crate::surface::core::plane;
 use glam::DVec3;
 
 use super::kinds::CurveOrFaces;
@@ -16,7 +17,7 @@ use crate::lang::value::{Dim, Quantity, Value};
 use crate::model::apart::{between, from_curve};
 use crate::network::Chain;
 use crate::network::meet::closest_points;
-use crate::surface::{Nearest, Surface, SurfaceKind, axis_of, plane};
+use crate::surface::{Nearest, Surface, SurfaceKind, axis_of};
 
 /// What a distance is taken from.
 enum Figure {

@@ -10,8 +10,12 @@ use crate::lang::std::surfaces::finished;
 use crate::lang::types::Length;
 use crate::network::Chain;
 use crate::network::net;
-use crate::surface::coons::{self, Grid, Method, Settings};
-use crate::surface::skin::{self, Across, Leaving, Section};
+use crate::surface::blended::coons;
+use crate::surface::blended::coons::{Grid, Method, Settings};
+use crate::surface::blended::skin;
+use crate::surface::blended::skin::Across;
+use crate::surface::blended::skin_align::Section;
+use crate::surface::blended::skin_ends::Leaving;
 use crate::surface::{Reparam, Surface};
 
 /// The model's tolerance, with another distance at which curves meet.

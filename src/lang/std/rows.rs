@@ -3,7 +3,8 @@
 use super::surfaces::finished;
 use crate::builtins;
 use crate::lang::types::Rest;
-use crate::surface::{self, Surface};
+use crate::surface;
+use crate::surface::Surface;
 
 builtins! {
     /// Surfaces that follow one another along whole borders, as one surface.

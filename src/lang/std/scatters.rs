@@ -4,7 +4,8 @@ use super::curves::places;
 use super::surfaces::finished;
 use crate::builtins;
 use crate::lang::types::{Direction, Point};
-use crate::surface::{self, Surface};
+use crate::surface;
+use crate::surface::Surface;
 
 builtins! {
     /// Smooth surface through scattered points.

@@ -5,7 +5,7 @@ use crate::base::tolerance::Tolerance;
 use crate::geometry::nurbs::projected;
 use crate::io::cad::ground::Ground;
 use crate::io::iges::sheet::{Role, Values};
-use crate::surface::elementary::{Elementary, Form};
+use crate::surface::analysis::elementary::{Elementary, Form};
 use crate::surface::{NetForm, NurbsSurface, Off};
 
 impl Maker<'_> {

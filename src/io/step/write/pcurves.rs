@@ -13,7 +13,7 @@ use crate::base::math;
 use crate::base::tolerance::{NUDGE, POLE_STEP, Tolerance};
 use crate::geometry::Nurbs;
 use crate::io::cad::compose::fitted;
-use crate::surface::elementary::{Elementary, Form};
+use crate::surface::analysis::elementary::{Elementary, Form};
 
 /// Pieces of a smooth stretch of an edge to begin with, each of which gets a spline of its own.
 const PLACES: usize = 4;

@@ -7,7 +7,7 @@ use super::text::{Id, Records, Values};
 use crate::geometry::nurbs::projected;
 use crate::io::cad::ground::Ground;
 use crate::surface::NurbsSurface;
-use crate::surface::elementary::{Elementary, Form};
+use crate::surface::analysis::elementary::{Elementary, Form};
 
 /// Writes the surface.
 pub fn put(records: &mut Records, ground: &Ground, scale: &Scale) -> Id {
