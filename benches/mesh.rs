@@ -10,6 +10,7 @@ use lofting::base::tolerance::Tolerance;
 use lofting::geometry::build::{arc_through, spline};
 use lofting::geometry::{Curve, Ends, Spline};
 use lofting::mesh::pipeline::build::build;
+use lofting::mesh::request::settings::RuleSettings;
 use lofting::mesh::{Elements, Input, Plan, Rule, Target};
 use lofting::model::topology::Named;
 use lofting::model::{Model, SurfaceId};
@@ -49,9 +50,13 @@ fn coons_face(c: &mut Criterion) {
     let mut group = c.benchmark_group("coons");
     for n in [100_u32, 1000] {
         let mut plan = Plan::of("m", vec![(SurfaceId(0), false)]);
-        plan.elements = Elements::Quads;
-        plan.rules =
-            (0..2).map(|k| Rule { count: Some((n, Origin::NONE)), ..Rule::on(Target::Chain(chains[k].clone()), Origin::NONE) }).collect();
+        plan.settings.elements = Some((Elements::Quads, Origin::NONE));
+        plan.rules = (0..2)
+            .map(|k| Rule {
+                settings: RuleSettings { count: Some((n, Origin::NONE)), ..RuleSettings::default() },
+                ..Rule::on(Target::Chain(chains[k].clone()), Origin::NONE)
+            })
+            .collect();
         group.throughput(Throughput::Elements(u64::from(n) * u64::from(n)));
         group.sample_size(20).bench_function(format!("{n} by {n} quads"), |b| {
             b.iter(|| {

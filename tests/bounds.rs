@@ -500,8 +500,9 @@ fn meshed(surface: &Surface, chord: f64, elements: Elements) -> Mesh {
     let named = vec![Named { name: "s".to_owned(), surface: surface.clone() }];
     let model = Model::build(named, &network, &tolerance(), &Job::new()).unwrap();
     let mut plan = Plan::of("m", vec![(SurfaceId::at(0), false)]);
-    plan.method = MeshMethod::Auto;
-    (plan.chord_error, plan.size, plan.elements) = (Some((chord, Origin::NONE)), Some((100.0, Origin::NONE)), elements);
+    plan.settings.method = Some((MeshMethod::Auto, Origin::NONE));
+    (plan.settings.chord_error, plan.settings.size, plan.settings.elements) =
+        (Some((chord, Origin::NONE)), Some((100.0, Origin::NONE)), Some((elements, Origin::NONE)));
     let input = Input { plan: &plan, model: &model, network: &network, tolerance: &tolerance() };
     mesh_of(&input, &Job::new(), &mut Vec::new()).unwrap().mesh
 }

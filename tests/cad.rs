@@ -55,7 +55,7 @@ fn of_surfaces(surfaces: Vec<Surface>, tolerance: Tolerance, snap: Option<f64>) 
 impl Skin {
     fn plan(&self, size: f64) -> Plan {
         let mut plan = Plan::of("m", self.shell.surfaces.clone());
-        plan.size = Some((size, Origin::NONE));
+        plan.settings.size = Some((size, Origin::NONE));
         plan.glue = self.shell.surfaces.iter().map(|s| (s.0, self.shell.near)).collect();
         plan
     }

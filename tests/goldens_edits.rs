@@ -120,9 +120,8 @@ fn values(cx: &mut Cx) -> (String, Vec<f64>) {
         put(shown.join(" "));
     }
     for mesh in cx.meshes(ModuleId::MAIN) {
-        let numbers = (mesh.size, mesh.chord_error, mesh.angle_error, mesh.min_size, mesh.growth, mesh.smooth, mesh.order);
-        put(format!("{numbers:?} {:?} {:?} {:?}", mesh.elements, mesh.method, mesh.conforming));
-        mesh.rules.iter().for_each(|r| put(format!("{:?} {:?} {:?} {:?} {:?}", r.count, r.size, r.bias, r.elements, r.method)));
+        put(format!("{:?}", mesh.settings));
+        mesh.rules.iter().for_each(|r| put(format!("{:?}", r.settings)));
         mesh.refines.iter().for_each(|r| put(format!("{:?} {:?} {:?}", r.boxes, r.size, r.radius)));
     }
     for check in cx.checks() {

@@ -10,6 +10,7 @@ use lofting::base::tolerance::Tolerance;
 use lofting::geometry::build::{arc_through, circle, line, polyline, spline};
 use lofting::geometry::{Curve, Ends, Spline};
 use lofting::mesh::pipeline::build::build;
+use lofting::mesh::request::settings::RuleSettings;
 use lofting::mesh::{Built, Elements, Input, Mesh, Plan, Rule, Target};
 use lofting::model::topology::Named;
 use lofting::model::{Model, ShellRequest, SurfaceId};
@@ -228,8 +229,8 @@ fn figure_2_2_is_an_open_shell_and_meshes_conform() {
     for elements in [Elements::Triangles, Elements::Quads] {
         let mut plan = scene.plan();
         plan.surfaces = shell.surfaces.clone();
-        plan.elements = elements;
-        plan.size = Some((0.4, Origin::NONE));
+        plan.settings.elements = Some((elements, Origin::NONE));
+        plan.settings.size = Some((0.4, Origin::NONE));
         let mesh = scene.sound(&plan);
         assert_eq!(edges_of(&mesh).1, 1, "a disc");
     }
@@ -264,8 +265,8 @@ fn kinked_sides_split_a_surface_into_four() {
     let scene = Scene::new(&curves, vec![coons_of(&curves.each_ref().map(chain))]);
     assert_eq!(counts(&scene), (4, 12, 9));
     let mut plan = scene.plan();
-    plan.elements = Elements::Quads;
-    plan.size = Some((0.3, Origin::NONE));
+    plan.settings.elements = Some((Elements::Quads, Origin::NONE));
+    plan.settings.size = Some((0.3, Origin::NONE));
     let mesh = scene.sound(&plan);
     for kink in [p(1., -0.2, 0.), p(2.2, 1., 0.), p(1., 2.2, 0.), p(-0.2, 1., 0.)] {
         assert!(mesh.nodes.iter().any(|n| n.distance(kink) < 1e-9), "a node at the kink {kink}");
@@ -292,11 +293,11 @@ fn neighbours_share_nodes_where_one_side_meets_two() {
     let shell = scene.model.shell(&request, &scene.network, &tolerance(), &mut Vec::new()).unwrap();
     let mut plan = scene.plan();
     plan.surfaces = shell.surfaces;
-    plan.size = Some((0.3, Origin::NONE));
+    plan.settings.size = Some((0.3, Origin::NONE));
     let mesh = scene.sound(&plan);
     assert_eq!(edges_of(&mesh).1, 1);
     assert!((area(&mesh) - 4.0).abs() < 1e-9);
-    plan.conforming = false;
+    plan.settings.conforming = Some((false, Origin::NONE));
     let apart = scene.mesh(&plan).unwrap().0.mesh;
     assert_eq!(edges_of(&apart).1, 3, "three discs that share nothing");
 }
@@ -306,11 +307,11 @@ fn strips_pass_a_count_on_and_refuse_two() {
     let curves = square(p(0., 0., 0.), 1.0);
     let scene = Scene::new(&curves, vec![coons_of(&curves.each_ref().map(chain))]);
     let mut plan = scene.plan();
-    plan.elements = Elements::Quads;
-    plan.size = Some((0.1, Origin::NONE));
+    plan.settings.elements = Some((Elements::Quads, Origin::NONE));
+    plan.settings.size = Some((0.1, Origin::NONE));
     assert_eq!(scene.sound(&plan).quads.len(), 100);
     let count = |k: usize, n: u32, origin: u32| Rule {
-        count: Some((n, Origin(origin))),
+        settings: RuleSettings { count: Some((n, Origin(origin))), ..RuleSettings::default() },
         ..Rule::on(Target::Chain(chain(&curves[k])), Origin(origin))
     };
     plan.rules = vec![count(0, 4, 1)];
@@ -327,9 +328,11 @@ fn bias_grows_along_the_curve_and_stays_there() {
     let curves = square(p(0., 0., 0.), 1.0);
     let scene = Scene::new(&curves, vec![coons_of(&curves.each_ref().map(chain))]);
     let mut plan = scene.plan();
-    plan.elements = Elements::Quads;
-    plan.rules =
-        vec![Rule { count: Some((10, Origin(1))), bias: Some((3.0, Origin(1))), ..Rule::on(Target::Chain(chain(&curves[0])), Origin(1)) }];
+    plan.settings.elements = Some((Elements::Quads, Origin::NONE));
+    plan.rules = vec![Rule {
+        settings: RuleSettings { count: Some((10, Origin(1))), bias: Some((3.0, Origin(1))), ..RuleSettings::default() },
+        ..Rule::on(Target::Chain(chain(&curves[0])), Origin(1))
+    }];
     let mesh = scene.sound(&plan);
     let on = |y: f64| {
         let mut xs: Vec<f64> = mesh.nodes.iter().filter(|n| (n.y - y).abs() < 1e-12).map(|n| n.x).collect();
@@ -348,19 +351,19 @@ fn revolved_surfaces_close_and_have_one_node_a_pole() {
     let scene = Scene::new(&[half], vec![sphere]);
     for (elements, order) in [(Elements::Triangles, 1), (Elements::Mixed, 1), (Elements::Triangles, 2), (Elements::Mixed, 2)] {
         let mut plan = scene.plan();
-        plan.elements = elements;
-        plan.order = order;
-        plan.size = Some((0.2, Origin::NONE));
+        plan.settings.elements = Some((elements, Origin::NONE));
+        plan.settings.order = Some((order, Origin::NONE));
+        plan.settings.size = Some((0.2, Origin::NONE));
         let mesh = scene.sound(&plan);
         assert_eq!(edges_of(&mesh), (0, 2), "a closed ball");
         assert!(mesh.nodes.iter().all(|n| (n.length() - 1.0).abs() < 1e-9), "also mid nodes lie on it");
         assert!((area(&mesh) / (4.0 * std::f64::consts::PI) - 1.0).abs() < 0.02);
     }
     let mut plan = scene.plan();
-    (plan.elements, plan.size) = (Elements::Quads, Some((0.2, Origin::NONE)));
+    (plan.settings.elements, plan.settings.size) = (Some((Elements::Quads, Origin::NONE)), Some((0.2, Origin::NONE)));
     let mesh = scene.sound(&plan);
     assert!(mesh.triangles.is_empty() && edges_of(&mesh) == (0, 2), "no map, no triangles");
-    plan.method = lofting::mesh::request::plan::Method::Mapped;
+    plan.settings.method = Some((lofting::mesh::request::methods::Method::Mapped, Origin::NONE));
     assert_eq!(scene.mesh(&plan).unwrap_err().code().0, "E704");
     // A tube round the axis: seams are welded, rings have at least three steps.
     let profile = straight(p(1., 0., 0.), p(1., 0., 3.));
@@ -368,18 +371,21 @@ fn revolved_surfaces_close_and_have_one_node_a_pole() {
     let scene = Scene::new(&[profile], vec![tube]);
     assert_eq!(counts(&scene), (1, 3, 2));
     let mut plan = scene.plan();
-    plan.elements = Elements::Quads;
-    plan.size = Some((50.0, Origin::NONE));
+    plan.settings.elements = Some((Elements::Quads, Origin::NONE));
+    plan.settings.size = Some((50.0, Origin::NONE));
     let mesh = scene.sound(&plan);
     assert_eq!((mesh.quads.len(), edges_of(&mesh)), (3, (6, 0)));
-    plan.angle_error = Some((15.0_f64.to_radians(), Origin(1)));
+    plan.settings.angle_error = Some((15.0_f64.to_radians(), Origin(1)));
     assert_eq!(scene.sound(&plan).quads.len(), 24);
-    plan.angle_error = None;
-    plan.chord_error = Some((0.0005, Origin(1)));
+    plan.settings.angle_error = None;
+    plan.settings.chord_error = Some((0.0005, Origin(1)));
     // Radius 100 with error 0.05 takes 100 steps.
     assert_eq!(scene.sound(&plan).quads.len(), 100);
     let ring = circle(p(0., 0., 9.), 1.0, DVec3::Z, Origin::NONE).unwrap();
-    plan.rules = vec![Rule { count: Some((40, Origin(2))), ..Rule::on(Target::Chain(chain(&ring)), Origin(2)) }];
+    plan.rules = vec![Rule {
+        settings: RuleSettings { count: Some((40, Origin(2))), ..RuleSettings::default() },
+        ..Rule::on(Target::Chain(chain(&ring)), Origin(2))
+    }];
     let fault = scene.mesh(&plan).map(|m| m.1.iter().map(|f| f.code().0).collect::<Vec<_>>());
     assert!(matches!(&fault, Ok(codes) if codes == &["W701"]), "that circle is on no edge of the mesh: {fault:?}");
 }
@@ -403,7 +409,7 @@ fn a_ball_of_two_lunes_is_a_closed_shell() {
     assert!(shell.closed);
     let mut plan = scene.plan();
     plan.surfaces = shell.surfaces;
-    plan.size = Some((0.3, Origin::NONE));
+    plan.settings.size = Some((0.3, Origin::NONE));
     let mesh = scene.sound(&plan);
     assert!(edges_of(&mesh) == (0, 2) && mesh.is_watertight());
 }
@@ -443,9 +449,9 @@ fn rules_that_decide_nothing_or_twice_are_warned_of() {
     let curves = square(p(0., 0., 0.), 1.0);
     let scene = Scene::new(&curves, vec![coons_of(&curves.each_ref().map(chain))]);
     let mut plan = scene.plan();
-    plan.size = Some((0.1, Origin::NONE));
+    plan.settings.size = Some((0.1, Origin::NONE));
     let size = |k: usize, size: f64, origin: u32| Rule {
-        size: Some((size, Origin(origin))),
+        settings: RuleSettings { size: Some((size, Origin(origin))), ..RuleSettings::default() },
         ..Rule::on(Target::Chain(chain(&curves[k])), Origin(origin))
     };
     let codes = |plan: &Plan| scene.mesh(plan).unwrap().1.iter().map(|f| f.code().0).collect::<Vec<_>>();
@@ -455,8 +461,11 @@ fn rules_that_decide_nothing_or_twice_are_warned_of() {
     assert_eq!(codes(&plan), ["W701"], "the opposite side wants more");
     plan.rules = vec![size(0, 0.5, 1), size(0, 0.05, 2)];
     assert_eq!(codes(&plan), ["W706"]);
-    plan.chord_error = Some((0.01, Origin(9)));
-    plan.rules = vec![Rule { count: Some((1, Origin(1))), ..Rule::on(Target::Surface(SurfaceId(0)), Origin(1)) }];
+    plan.settings.chord_error = Some((0.01, Origin(9)));
+    plan.rules = vec![Rule {
+        settings: RuleSettings { count: Some((1, Origin(1))), ..RuleSettings::default() },
+        ..Rule::on(Target::Surface(SurfaceId(0)), Origin(1))
+    }];
     assert_eq!(scene.sound(&plan).triangles.len(), 2, "one count for each side");
 }
 
@@ -466,13 +475,16 @@ fn written_counts_too_coarse_for_a_limit_name_both() {
     let curves = [arch(0.0), straight(p(4., 0., 0.), p(4., 5., 0.)), arch(5.0), straight(p(0., 0., 0.), p(0., 5., 0.))];
     let scene = Scene::new(&curves, vec![coons_of(&curves.each_ref().map(chain))]);
     let mut plan = scene.plan();
-    plan.chord_error = Some((0.01, Origin(7)));
-    plan.rules = vec![Rule { count: Some((3, Origin(8))), ..Rule::on(Target::Chain(chain(&curves[0])), Origin(8)) }];
+    plan.settings.chord_error = Some((0.01, Origin(7)));
+    plan.rules = vec![Rule {
+        settings: RuleSettings { count: Some((3, Origin(8))), ..RuleSettings::default() },
+        ..Rule::on(Target::Chain(chain(&curves[0])), Origin(8))
+    }];
     let fault = scene.mesh(&plan).unwrap_err();
     let report = lofting::base::fault::Describe::describe(&fault, &Plain);
     assert_eq!(report.code.0, "E703");
     assert!(report.labels.len() == 2 && report.help.as_deref() == Some("count: 11"), "{report:?}");
-    plan.rules[0].count = Some((11, Origin(8)));
+    plan.rules[0].settings.count = Some((11, Origin(8)));
     assert!(scene.sound(&plan).chord_error(&tolerance()).unwrap() <= 0.01);
 }
 
@@ -493,9 +505,9 @@ fn measured_error_keeps_the_setting_on_many_surfaces() {
         let curves = [side(0, 1), side(1, 2), side(3, 2), side(0, 3)];
         let scene = Scene::new(&curves, vec![coons_of(&curves.each_ref().map(chain))]);
         let mut plan = scene.plan();
-        plan.chord_error = Some((0.02, Origin::NONE));
-        plan.size = Some((2.0, Origin::NONE));
-        plan.elements = if round % 2 == 0 { Elements::Triangles } else { Elements::Mixed };
+        plan.settings.chord_error = Some((0.02, Origin::NONE));
+        plan.settings.size = Some((2.0, Origin::NONE));
+        plan.settings.elements = Some((if round % 2 == 0 { Elements::Triangles } else { Elements::Mixed }, Origin::NONE));
         let mesh = scene.sound(&plan);
         let measured = mesh.chord_error(&tolerance()).unwrap();
         assert!(measured <= 0.02, "round {round}: {measured}");
@@ -511,7 +523,7 @@ fn area_converges_with_size_and_measured_error_keeps_the_setting() {
     let mut areas = Vec::new();
     for size in [1.0, 0.5, 0.25, 0.125] {
         let mut plan = scene.plan();
-        plan.size = Some((size, Origin::NONE));
+        plan.settings.size = Some((size, Origin::NONE));
         areas.push(area(&scene.sound(&plan)));
     }
     let steps: Vec<f64> = areas.windows(2).map(|w| w[1] - w[0]).collect();
@@ -519,9 +531,9 @@ fn area_converges_with_size_and_measured_error_keeps_the_setting() {
     for chord in [0.1, 0.02, 0.003] {
         for elements in [Elements::Triangles, Elements::Quads] {
             let mut plan = scene.plan();
-            plan.size = Some((10.0, Origin::NONE));
-            plan.elements = elements;
-            plan.chord_error = Some((chord, Origin::NONE));
+            plan.settings.size = Some((10.0, Origin::NONE));
+            plan.settings.elements = Some((elements, Origin::NONE));
+            plan.settings.chord_error = Some((chord, Origin::NONE));
             let mesh = scene.sound(&plan);
             let measured = mesh.chord_error(&tolerance()).unwrap();
             assert!(measured <= chord && measured > 0.2 * chord, "{measured} for {chord}");
@@ -539,14 +551,14 @@ fn trilateral_faces_take_triangles_or_three_blocks_of_quads() {
     assert_eq!(counts(&scene), (1, 3, 3));
     for order in [1, 2] {
         let mut plan = scene.plan();
-        plan.order = order;
-        plan.size = Some((0.2, Origin::NONE));
+        plan.settings.order = Some((order, Origin::NONE));
+        plan.settings.size = Some((0.2, Origin::NONE));
         let mesh = scene.sound(&plan);
         let longest = |mesh: &Mesh| mesh.edge_lengths().into_iter().fold(0.0, f64::max);
         let (free, euler) = edges_of(&mesh);
         assert_eq!((mesh.triangles.len(), euler), ((free / 3) * (free / 3), 1));
         assert!(longest(&mesh) <= 0.2 * 1.05 && longest(&mesh) > 0.15, "{}", longest(&mesh));
-        plan.elements = Elements::Quads;
+        plan.settings.elements = Some((Elements::Quads, Origin::NONE));
         let mesh = scene.sound(&plan);
         assert!(mesh.triangles.is_empty() && edges_of(&mesh).1 == 1, "{} quads", mesh.quads.len());
         assert!(longest(&mesh) <= 0.2 * 1.05, "{}", longest(&mesh));
@@ -571,10 +583,10 @@ fn curves_and_points_share_nodes_with_faces() {
     curves.push(straight(p(1., 1., 0.), p(1., 1., 2.)));
     let scene = Scene::new(&curves, vec![coons_of(&faces)]);
     let mut plan = scene.plan();
-    plan.size = Some((0.25, Origin::NONE));
+    plan.settings.size = Some((0.25, Origin::NONE));
     plan.curves = vec![("c1".to_owned(), chain(&curves[0])), ("c5".to_owned(), chain(&curves[4]))];
     plan.points = vec![p(0.4, 1.0, 0.0), p(5.0, 5.0, 5.0)];
-    plan.order = 2;
+    plan.settings.order = Some((2, Origin::NONE));
     let mesh = scene.sound(&plan);
     // The point cuts the opposite side into 0.4 and 0.6: 2 + 3 steps, which the strip passes on.
     assert_eq!(mesh.lines.len(), 5 + 8);

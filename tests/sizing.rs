@@ -64,7 +64,8 @@ fn scene_with(faces: usize, inner: Vec<Curve>) -> Scene {
 impl Scene {
     fn plan(&self, size: f64, refines: Vec<Refine>) -> Plan {
         let mut plan = Plan::of("m", (0..self.model.surfaces.len()).map(|k| (SurfaceId::at(k), false)).collect());
-        (plan.size, plan.method, plan.refines) = (Some((size, Origin::NONE)), Method::Delaunay, refines);
+        (plan.settings.size, plan.settings.method, plan.refines) =
+            (Some((size, Origin::NONE)), Some((Method::Delaunay, Origin::NONE)), refines);
         plan
     }
 
@@ -206,7 +207,7 @@ fn lines_and_points_inside_are_built_in() {
     let scene = scene_with(2, vec![rib, ring, over, stem]);
     for order in [1, 2] {
         let mut plan = scene.plan(0.7, Vec::new());
-        (plan.method, plan.order) = (Method::Auto, order);
+        (plan.settings.method, plan.settings.order) = (Some((Method::Auto, Origin::NONE)), Some((order, Origin::NONE)));
         plan.curves = scene.inner.iter().enumerate().map(|(k, c)| (format!("inner{k}"), c.clone())).collect();
         plan.points = vec![p(8.0, 5.0, 0.0), p(10.0, 5.0, 3.0), p(0.0, 0.0, 0.0), p(7.0, 4.0, 0.0)];
         let built = scene.build(&plan).unwrap();
@@ -215,7 +216,7 @@ fn lines_and_points_inside_are_built_in() {
         assert!((built.mesh.quality().unwrap().area - 84.0).abs() < 1e-9);
         let alone = Plan { curves: Vec::new(), points: Vec::new(), ..plan.clone() };
         assert!(scene.build(&alone).unwrap().explanation.faces.iter().all(|f| f.method == "mapped"));
-        plan.method = Method::Mapped;
+        plan.settings.method = Some((Method::Mapped, Origin::NONE));
         assert_eq!(scene.build(&plan).unwrap_err().code().0, "E705");
     }
 }
@@ -258,7 +259,7 @@ fn what_cannot_be_is_refused_and_what_decides_nothing_is_said() {
     }
     let mut plan = scene.plan(1.0, vec![near(p(5.0, 3.0, 0.0), 1.0, 0.1)]);
     assert!(scene.build(&plan).unwrap().remarks.is_empty());
-    plan.min_size = Some((0.2, Origin::NONE));
+    plan.settings.min_size = Some((0.2, Origin::NONE));
     assert_eq!(scene.build(&plan).unwrap_err().code().0, "E707");
 }
 
@@ -267,7 +268,7 @@ fn growth_and_smoothing_are_followed() {
     let scene = scene(1);
     let nodes = |growth: Option<f64>| {
         let mut plan = scene.plan(2.0, vec![near(p(5.0, 3.0, 0.0), 0.2, 0.05)]);
-        plan.growth = growth.map(|g| (g, Origin::NONE));
+        plan.settings.growth = growth.map(|g| (g, Origin::NONE));
         let built = scene.build(&plan).unwrap();
         built.mesh.nodes.len()
     };
@@ -275,7 +276,7 @@ fn growth_and_smoothing_are_followed() {
     assert!(slow > 2 * plain && 5 * plain > 6 * fast, "{slow} {plain} {fast}");
     let smoothed = |rounds: u32| {
         let mut plan = scene.plan(0.5, vec![near(p(5.0, 3.0, 0.0), 0.2, 0.4)]);
-        plan.smooth = Some((rounds, Origin::NONE));
+        plan.settings.smooth = Some((rounds, Origin::NONE));
         scene.build(&plan).unwrap().mesh.quality().unwrap().mean_quality
     };
     let (raw, once, more) = (smoothed(0), smoothed(1), smoothed(8));
@@ -295,7 +296,7 @@ fn it_is_told_what_decided_where() {
     told("strip of c1", &["by sizes along it", "steps 0.100 to", "% by size 0.1 near (10, 3, 0)"]);
     told("strip of c0", &["% by the size", "% by size 0.5 in the box"]);
     told("strip of c5", &["8 steps, by the size"]);
-    plan.method = Method::Mapped;
+    plan.settings.method = Some((Method::Mapped, Origin::NONE));
     let lines = scene.build(&plan).unwrap().explanation.lines;
     assert!(lines[0].contains("mapped") && lines[0].contains("; by size 0.1 near"), "{}", lines[0]);
 }
@@ -356,7 +357,7 @@ fn work_is_the_same_whatever_was_made_before() {
     let (tolerance, mut reuse) = (tolerance(), Reuse::default());
     for method in [Method::Mapped, Method::Delaunay] {
         let mut plan = scene.plan(0.5, vec![]);
-        (plan.method, plan.angle_error) = (method, Some((0.1, Origin::NONE)));
+        (plan.settings.method, plan.settings.angle_error) = (Some((method, Origin::NONE)), Some((0.1, Origin::NONE)));
         let input = Input { plan: &plan, model: &scene.model, network: &scene.network, tolerance: &tolerance };
         let work = |reuse: Option<&Reuse>| {
             let (built, work) = Outline::new(&input).unwrap().measured(&input, reuse, &Job::new());

@@ -21,12 +21,12 @@ use super::std::imprint::pieces;
 use super::syntax::ast::{self, ClauseWord, Declaration, Expr, ExprId, For, Keyword, MeshClause, Span};
 use super::types::Ty;
 use super::units;
-use super::value::{MeshValue, ShellValue, Value};
+use super::value::{Dim, MeshValue, ShellValue, Value};
 use crate::base::fault::ValueFault;
 use crate::base::limits;
 use crate::base::origin::Origin;
 use crate::base::text::article;
-use crate::mesh::{Elements, Method};
+use crate::mesh::request::settings::{Given, Settings};
 
 /// A setting as resolved: its key, its value, the expression that says it.
 pub(super) struct Resolved {
@@ -56,25 +56,22 @@ pub(super) fn truth(value: &Value) -> Option<bool> {
     if let Value::Bool(b) = value { Some(*b) } else { None }
 }
 
-fn elements(value: &Value) -> Option<Elements> {
-    let Value::Word(w) = value else { return None };
-    Some(match &**w {
-        "quads" => Elements::Quads,
-        "mixed" => Elements::Mixed,
-        _ => Elements::Triangles,
-    })
-}
-
-fn method(value: &Value) -> Option<Method> {
-    let Value::Word(w) = value else { return None };
-    Some(match &**w {
-        "mapped" => Method::Mapped,
-        "delaunay" => Method::Delaunay,
-        "quadtree" => Method::Quadtree,
-        "isoline" => Method::Isoline,
-        "display" => Method::Display,
-        _ => Method::Auto,
-    })
+/// Settings of a block of the mesher; angles in radians.
+pub(super) fn filled<S: Settings>(resolved: &[Resolved]) -> Result<S, Halt> {
+    let mut all = S::default();
+    for Resolved { key, ty, value, origin } in resolved {
+        let is_taken = match value {
+            Value::Number(q) if *ty == Ty::Quantity(Dim::ANGLE) => all.set(key, Given::Number(units::radians(q.value)), *origin),
+            Value::Number(q) => all.set(key, Given::Number(q.value), *origin),
+            Value::Bool(b) => all.set(key, Given::Flag(*b), *origin),
+            Value::Word(word) => all.set(key, Given::Word(word), *origin),
+            _ => false,
+        };
+        if !is_taken {
+            return Err(Halt::Bug("a setting of a mesh of another type than declared"));
+        }
+    }
+    Ok(all)
 }
 
 impl Cx<'_> {
@@ -166,25 +163,7 @@ impl Cx<'_> {
                     gather.done()?;
                     let mut settings = settings.unwrap_or_default();
                     cx.shares(code, &mut settings, &mut meshed)?;
-                    meshes.push(MeshSpec {
-                        name,
-                        origin,
-                        things,
-                        size: said(&settings, "size", number),
-                        chord_error: said(&settings, "chord_error", number),
-                        angle_error: said(&settings, "angle_error", |v| number(v).map(units::radians)),
-                        min_size: said(&settings, "min_size", number),
-                        growth: said(&settings, "growth", number),
-                        smooth: said(&settings, "smooth", |v| number(v).map(|n| n as u32)),
-                        elements: said(&settings, "elements", elements),
-                        order: said(&settings, "order", |v| number(v).map(|n| n as u8)),
-                        method: said(&settings, "method", method),
-                        conforming: said(&settings, "conforming", truth),
-                        imprint: said(&settings, "imprint", truth),
-                        flip: said(&settings, "flip", truth),
-                        rules,
-                        refines,
-                    });
+                    meshes.push(MeshSpec { name, origin, things, settings: filled(&settings)?, rules, refines });
                     let index = u32::try_from(base + meshes.len() - 1).unwrap_or(u32::MAX);
                     Ok(Value::Mesh(Arc::new(MeshValue::Declared { module: code.module, index })))
                 }
@@ -372,7 +351,7 @@ impl Cx<'_> {
                 continue;
             }
             let value = self.eval_as(code, setting.value, known.ty, &format!("`{key}`"));
-            let value = value.and_then(|v| self.in_range(code, &key, v, setting.value));
+            let value = value.and_then(|v| self.in_range(code, known, v, setting.value));
             if let Some(value) = gather.take(value) {
                 let origin = self.origin_at(setting.value);
                 out.push(Resolved { key: known.key, ty: known.ty, value, origin });
@@ -381,9 +360,10 @@ impl Cx<'_> {
         gather.done().map(|()| out)
     }
 
-    fn in_range(&mut self, code: Code<'_>, key: &str, value: Value, id: ExprId) -> Result<Value, Halt> {
+    fn in_range(&mut self, code: Code<'_>, setting: &Setting, value: Value, id: ExprId) -> Result<Value, Halt> {
         let Some(x) = number(&value) else { return Ok(value) };
-        if x > 1.0 && matches!(&value, Value::Number(q) if q.percent) && !matches!(key, "bias" | "growth") {
+        let key = setting.key;
+        if x > 1.0 && setting.ty == Ty::Size && matches!(&value, Value::Number(q) if q.percent) {
             let found = self.show(&value);
             let text = format!("`{key}` is at most 100% of the diagonal of what is meshed, got {found}");
             return Err(self.error(code, "E306", text, code.span(id), found).came_from(code).stop());
@@ -392,7 +372,7 @@ impl Cx<'_> {
         if matches!(key, "width" | "height") && !(least..=most).contains(&x) {
             return Err(self.out_of_page(code, key, &value, id));
         }
-        let Some((_, range)) = settings::bounds(key).iter().find(|(holds, _)| !holds(x)) else { return Ok(value) };
+        let Some((_, range)) = setting.range.iter().find(|(holds, _)| !holds(x)) else { return Ok(value) };
         let found = if let Value::Number(q) = &value { units::told(*q, self.unit) } else { self.show(&value) };
         Err(self.error(code, "E306", format!("`{key}` must be {range}, got {found}"), code.span(id), found).came_from(code).stop())
     }
@@ -426,15 +406,7 @@ impl Cx<'_> {
             Some(thing) => self.origin_at(*thing),
             None => Origin::NONE,
         };
-        Ok(RuleSpec {
-            things,
-            count: said(&settings, "count", |v| number(v).map(|n| n as u32)),
-            size: said(&settings, "size", number),
-            bias: said(&settings, "bias", number),
-            elements: said(&settings, "elements", elements),
-            method: said(&settings, "method", method),
-            origin,
-        })
+        Ok(RuleSpec { things, settings: filled(&settings)?, origin })
     }
 
     fn rule_things(&mut self, code: Code<'_>, things: &[ExprId]) -> Result<Vec<(Value, Origin)>, Halt> {

@@ -37,9 +37,9 @@ fn shapes_of(mesh: &Mesh) -> Vec<Shape> {
 
 /// The shapes that a declared mesh will have, by what it is of and its settings.
 fn shapes_asked(spec: &MeshSpec) -> Vec<Shape> {
-    let [line, triangle, quad] = Shape::of_order(spec.order.map_or(1, |order| order.0));
-    let elements = spec.elements.map_or(Elements::Triangles, |said| said.0);
-    let of_rules = spec.rules.iter().filter_map(|rule| rule.elements.map(|said| said.0));
+    let [line, triangle, quad] = Shape::of_order(spec.settings.order());
+    let elements = spec.settings.elements();
+    let of_rules = spec.rules.iter().filter_map(|rule| rule.settings.elements.map(|said| said.0));
     let kinds: Vec<Elements> = std::iter::once(elements).chain(of_rules).collect();
     let curves = spec.things.iter().any(|(value, _)| matches!(value, Value::Curve(_) | Value::Link(..) | Value::Edge(..)));
     let faces = spec.things.iter().any(|(value, _)| matches!(value, Value::Surface(_) | Value::Shell(_)));

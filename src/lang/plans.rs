@@ -8,26 +8,16 @@ use super::value::Value;
 use crate::base::bbox::Box3;
 use crate::base::origin::Origin;
 use crate::draw::View;
-use crate::mesh::{Elements, Method};
-
-/// A setting with the expression that says it.
-pub type Located<T> = Option<(T, Origin)>;
+pub use crate::mesh::request::settings::Located;
+use crate::mesh::request::settings::{MeshSettings, RuleSettings};
 
 /// `on THINGS { … }` of a mesh.
 #[derive(Clone, Debug, Default)]
 pub struct RuleSpec {
     /// Links, curves, edges, surfaces, patches; nested lists flattened.
     pub things: Vec<(Value, Origin)>,
-    /// Steps over the whole length.
-    pub count: Located<u32>,
-    /// Target edge length, model units.
-    pub size: Located<f64>,
-    /// Last step over first step.
-    pub bias: Located<f64>,
-    /// Elements of faces.
-    pub elements: Located<Elements>,
-    /// Method of faces.
-    pub method: Located<Method>,
+    /// What it says, model units.
+    pub settings: RuleSettings,
     /// The clause.
     pub origin: Origin,
 }
@@ -56,30 +46,8 @@ pub struct MeshSpec {
     pub origin: Origin,
     /// Surfaces, shells, curves, points; nested lists flattened, each with the expression that names it.
     pub things: Vec<(Value, Origin)>,
-    /// Target edge length, model units.
-    pub size: Located<f64>,
-    /// Largest distance mesh–surface, model units.
-    pub chord_error: Located<f64>,
-    /// Largest turn of the normal across an element, radians.
-    pub angle_error: Located<f64>,
-    /// Floor of the size, model units.
-    pub min_size: Located<f64>,
-    /// Ratio of neighbouring sizes.
-    pub growth: Located<f64>,
-    /// Rounds of smoothing.
-    pub smooth: Located<u32>,
-    /// Kind of elements.
-    pub elements: Located<Elements>,
-    /// 1 or 2.
-    pub order: Located<u8>,
-    /// How faces are meshed.
-    pub method: Located<Method>,
-    /// Neighbouring faces share nodes.
-    pub conforming: Located<bool>,
-    /// Faces that touch without a shared border are joined.
-    pub imprint: Located<bool>,
-    /// Faces show their other sides.
-    pub flip: Located<bool>,
+    /// What it says of the whole mesh, model units and radians.
+    pub settings: MeshSettings,
     /// `on` clauses in order of writing.
     pub rules: Vec<RuleSpec>,
     /// `near` and `in` clauses in order of writing.

@@ -1,6 +1,6 @@
 //! `near` and `in` clauses of a mesh: places where elements are smaller.
 
-use super::collections::{number, said};
+use super::collections::filled;
 use super::cx::{Cx, Halt};
 
 use super::eval::{Code, Gather};
@@ -12,6 +12,7 @@ use super::types::Ty;
 use super::value::Value;
 use crate::base::bbox::Box3;
 use crate::base::origin::Origin;
+use crate::mesh::request::settings::{BoxSettings, NearSettings};
 
 impl Cx<'_> {
     /// `near points, curves { … }` or `in box { … }`.
@@ -28,13 +29,18 @@ impl Cx<'_> {
         gather.done()?;
         let mut settings = settings.unwrap_or_default();
         self.shares(code, &mut settings, meshed)?;
-        let Some(size) = said(&settings, "size", number) else {
+        let (size, radius) = if clause.word == ClauseWord::Near {
+            let near: NearSettings = filled(&settings)?;
+            (near.size, near.radius())
+        } else {
+            (filled::<BoxSettings>(&settings)?.size, 0.0)
+        };
+        let Some(size) = size else {
             let span = Span { start: clause.span.start, end: clause.span.start + word.len() as u32 };
             let draft = self.error(code, "E301", format!("`{word}` needs `size`"), span, "`size` is missing");
             return Err(draft.help("say how long edges may be there: `{ size: 5mm }`").stop());
         };
         let origin = clause.things.first().map_or(Origin::NONE, |thing| self.origin_at(*thing));
-        let radius = said(&settings, "radius", number).map_or(0.0, |r| r.0);
         Ok(RefineSpec { things, boxes, size, radius, origin })
     }
 

@@ -6,15 +6,15 @@ use super::curve::place as point;
 use super::error::Error;
 use super::mesh::Mesh;
 use super::model::Model;
-use super::plan::{MeshPlan, Setting};
+use super::plan::MeshPlan;
 use crate::base::fault::Fault;
 use crate::base::job::Job;
 use crate::base::origin::Origin;
 use crate::lang::cx::Halt;
-use crate::lang::settings::bounds;
-use crate::lang::units::{number_text, radians};
+use crate::lang::units::{degrees, number_text};
 use crate::mesh;
 use crate::mesh::request::plan::{GroupRequest, Place, Refine};
+use crate::mesh::request::settings::{Given, RuleSettings, Settings, Takes};
 use crate::mesh::{Plan, Rule, Target};
 use crate::model::SurfaceId;
 use crate::model::topology::Shell;
@@ -36,7 +36,7 @@ impl MeshPlan {
     pub fn mesh(&self, model: &Model) -> Result<Mesh, Error> {
         self.in_range()?;
         let mut plan = Plan::of(&self.name, Vec::new());
-        self.settings(&mut plan);
+        plan.settings = self.settings;
         let mut faces = Faces::default();
         let mut said: Vec<Fault> = Vec::new();
         let failed = |fault: Fault| Error::of_fault(&fault, &model.speaker());
@@ -67,7 +67,7 @@ impl MeshPlan {
             }
         }
         let scene = (model.scene.model.as_ref(), model.scene.network.as_ref());
-        faces.settle(&mut plan, scene, self.flip, &model.tolerance).map_err(failed)?;
+        faces.settle(&mut plan, scene, self.settings.flip(), &model.tolerance).map_err(failed)?;
         for (name, said) in &self.rules {
             for target in targets(model, name)? {
                 plan.rules.push(rule(target, *said, name)?);
@@ -77,9 +77,10 @@ impl MeshPlan {
             let members: Vec<Vec<Target>> = things.iter().map(|thing| targets(model, thing)).collect::<Result<_, _>>()?;
             plan.groups.push(GroupRequest { name: name.clone(), members: members.concat(), origin: Origin::NONE });
         }
-        for (near, size, radius) in &self.refines {
+        for (near, settings) in &self.refines {
             let at = vec![Place::Point(point("near", *near)?)];
-            plan.refines.push(Refine { at, size: (*size, Origin::NONE), radius: *radius, origin: Origin::NONE });
+            let Some(size) = settings.size else { continue };
+            plan.refines.push(Refine { at, size, radius: settings.radius(), origin: Origin::NONE });
         }
         plan.bodies = faces.apart(&plan, &model.scene, &model.tolerance);
         let (mesh, found) = self.build(plan, model).map_err(failed)?;
@@ -98,40 +99,25 @@ impl MeshPlan {
         Ok((built.mesh, said))
     }
 
-    fn settings(&self, plan: &mut Plan) {
-        let said = |x: Option<f64>| x.map(|x| (x, Origin::NONE));
-        plan.size = said(self.size);
-        plan.chord_error = said(self.chord_error);
-        plan.angle_error = said(self.angle_error.map(radians));
-        plan.min_size = said(self.min_size);
-        plan.growth = said(self.growth);
-        plan.elements = self.elements;
-        plan.order = self.order;
-        plan.method = self.method;
-        plan.conforming = self.conforming;
-    }
-
-    /// E306 for the first number that is out of the range that scripts have for it.
+    /// E306 for the first number that is out of its range.
     fn in_range(&self) -> Result<(), Error> {
-        let whole = [("size", self.size), ("chord_error", self.chord_error), ("angle_error", self.angle_error)];
-        let more = [("min_size", self.min_size), ("growth", self.growth), ("order", Some(f64::from(self.order)))];
-        let of_rules = self.rules.iter().filter_map(|(_, said)| match said {
-            Setting::Count(n) => Some(("count", f64::from(*n))),
-            Setting::Size(size) => Some(("size", *size)),
-            Setting::Bias(bias) => Some(("bias", *bias)),
-            Setting::Elements(_) | Setting::Method(_) => None,
-        });
-        let of_refines = self.refines.iter().flat_map(|(_, size, radius)| [("size", *size), ("radius", *radius)]);
-        let said = whole.into_iter().chain(more).filter_map(|(key, x)| Some((key, x?)));
-        for (key, x) in said.chain(of_rules).chain(of_refines) {
-            let wrong =
-                if x.is_finite() { bounds(key).iter().find(|bound| !(bound.0)(x)).map(|bound| bound.1) } else { Some("a finite number") };
-            if let Some(range) = wrong {
-                return Err(Error::outside(key, number_text(x), range));
-            }
-        }
-        Ok(())
+        within_range(&self.settings)?;
+        self.rules.iter().try_for_each(|(_, settings)| within_range(settings))?;
+        self.refines.iter().try_for_each(|(_, settings)| within_range(settings))
     }
+}
+
+/// E306 for the first number of a block that is out of its range.
+fn within_range(settings: &impl Settings) -> Result<(), Error> {
+    for (declared, given, _) in settings.written() {
+        let Given::Number(x) = given else { continue };
+        let broken = declared.range.iter().find(|bound| !(bound.0)(x)).map(|bound| bound.1);
+        if let Some(range) = if x.is_finite() { broken } else { Some("a finite number") } {
+            let found = if declared.takes == Takes::Angle { degrees(x) } else { x };
+            return Err(Error::outside(declared.word, number_text(found), range));
+        }
+    }
+    Ok(())
 }
 
 /// The place of a declared surface in the surface model.
@@ -166,21 +152,17 @@ fn targets(model: &Model, name: &str) -> Result<Vec<Target>, Error> {
     })
 }
 
-/// A setting of a target; E306 where such a thing does not have it.
-fn rule(target: Target, said: Setting, name: &str) -> Result<Rule, Error> {
+/// Settings of a target; E306 where such a thing does not have them.
+fn rule(target: Target, settings: RuleSettings, name: &str) -> Result<Rule, Error> {
     let is_curve = matches!(target, Target::Chain(_));
-    let mut rule = Rule::on(target, Origin::NONE);
-    match said {
-        Setting::Count(n) => rule.count = Some((n, Origin::NONE)),
-        Setting::Size(size) => rule.size = Some((size, Origin::NONE)),
-        Setting::Bias(bias) if is_curve => rule.bias = Some((bias, Origin::NONE)),
-        Setting::Bias(_) => return Err(Error::outside("bias", format!("`{name}`"), "on a curve")),
-        Setting::Elements(_) | Setting::Method(_) if is_curve => {
-            let key = if matches!(said, Setting::Elements(_)) { "elements" } else { "method" };
-            return Err(Error::outside(key, format!("`{name}`"), "on a surface or shell"));
-        }
-        Setting::Elements(elements) => rule.elements = Some((elements, Origin::NONE)),
-        Setting::Method(method) => rule.method = Some((method, Origin::NONE)),
+    let other = settings.written().find(|(declared, ..)| match declared.word {
+        "bias" => !is_curve,
+        "elements" | "method" => is_curve,
+        _ => false,
+    });
+    if let Some((declared, ..)) = other {
+        let on = if is_curve { "on a surface or shell" } else { "on a curve" };
+        return Err(Error::outside(declared.word, format!("`{name}`"), on));
     }
-    Ok(rule)
+    Ok(Rule { settings, ..Rule::on(target, Origin::NONE) })
 }

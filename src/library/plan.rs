@@ -1,5 +1,8 @@
 //! What is asked of a mesh, said in Rust.
 
+use crate::base::origin::Origin;
+use crate::lang::units::radians;
+use crate::mesh::request::settings::{Located, MeshSettings, NearSettings, RuleSettings};
 use crate::mesh::{Elements, Method};
 
 /// What is asked of a mesh; [`MeshPlan::mesh`] makes it. Everything that is not said is as in a script: triangles of order 1, edges of a
@@ -22,29 +25,15 @@ pub struct MeshPlan {
     pub(super) name: String,
     pub(super) things: Vec<String>,
     pub(super) lines: Vec<String>,
-    pub(super) size: Option<f64>,
-    pub(super) chord_error: Option<f64>,
-    pub(super) angle_error: Option<f64>,
-    pub(super) min_size: Option<f64>,
-    pub(super) growth: Option<f64>,
-    pub(super) elements: Elements,
-    pub(super) order: u8,
-    pub(super) method: Method,
-    pub(super) conforming: bool,
-    pub(super) flip: bool,
-    pub(super) rules: Vec<(String, Setting)>,
-    pub(super) refines: Vec<([f64; 3], f64, f64)>,
+    pub(super) settings: MeshSettings,
+    pub(super) rules: Vec<(String, RuleSettings)>,
+    pub(super) refines: Vec<([f64; 3], NearSettings)>,
     pub(super) groups: Vec<(String, Vec<String>)>,
 }
 
-/// A setting of one thing.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Setting {
-    Count(u32),
-    Size(f64),
-    Bias(f64),
-    Elements(Elements),
-    Method(Method),
+/// A value that is written in no script.
+fn given<T>(value: T) -> Located<T> {
+    Some((value, Origin::NONE))
 }
 
 /// Settings of the whole mesh.
@@ -55,16 +44,7 @@ impl MeshPlan {
             name: name.to_owned(),
             things: Vec::new(),
             lines: Vec::new(),
-            size: None,
-            chord_error: None,
-            angle_error: None,
-            min_size: None,
-            growth: None,
-            elements: Elements::Triangles,
-            order: 1,
-            method: Method::Auto,
-            conforming: true,
-            flip: false,
+            settings: MeshSettings::default(),
             rules: Vec::new(),
             refines: Vec::new(),
             groups: Vec::new(),
@@ -84,91 +64,101 @@ impl MeshPlan {
     }
 
     /// Target edge length, model units, above 0.
-    pub fn size(self, size: f64) -> Self {
-        Self { size: Some(size), ..self }
+    pub fn size(mut self, size: f64) -> Self {
+        self.settings.size = given(size);
+        self
     }
 
     /// Largest distance between mesh and surfaces, model units, above 0.
-    pub fn chord_error(self, distance: f64) -> Self {
-        Self { chord_error: Some(distance), ..self }
+    pub fn chord_error(mut self, distance: f64) -> Self {
+        self.settings.chord_error = given(distance);
+        self
     }
 
     /// Largest turn of the normal across an element, degrees, above 0.
-    pub fn angle_error(self, degrees: f64) -> Self {
-        Self { angle_error: Some(degrees), ..self }
+    pub fn angle_error(mut self, degrees: f64) -> Self {
+        self.settings.angle_error = given(radians(degrees));
+        self
     }
 
     /// No edge is asked to be shorter, model units, above 0.
-    pub fn min_size(self, size: f64) -> Self {
-        Self { min_size: Some(size), ..self }
+    pub fn min_size(mut self, size: f64) -> Self {
+        self.settings.min_size = given(size);
+        self
     }
 
     /// Largest ratio of neighbouring sizes, above 1; 1.3 where nothing is said.
-    pub fn growth(self, ratio: f64) -> Self {
-        Self { growth: Some(ratio), ..self }
+    pub fn growth(mut self, ratio: f64) -> Self {
+        self.settings.growth = given(ratio);
+        self
     }
 
     /// Triangles, quads, or both.
-    pub fn elements(self, elements: Elements) -> Self {
-        Self { elements, ..self }
+    pub fn elements(mut self, elements: Elements) -> Self {
+        self.settings.elements = given(elements);
+        self
     }
 
     /// 1, or 2 for elements with mid nodes.
-    pub fn order(self, order: u8) -> Self {
-        Self { order, ..self }
+    pub fn order(mut self, order: u8) -> Self {
+        self.settings.order = given(order);
+        self
     }
 
     /// How faces are meshed.
-    pub fn method(self, method: Method) -> Self {
-        Self { method, ..self }
+    pub fn method(mut self, method: Method) -> Self {
+        self.settings.method = given(method);
+        self
     }
 
     /// Whether neighbouring faces share their nodes.
-    pub fn conforming(self, conforming: bool) -> Self {
-        Self { conforming, ..self }
+    pub fn conforming(mut self, conforming: bool) -> Self {
+        self.settings.conforming = given(conforming);
+        self
     }
 
     /// Whether faces show their other sides.
-    pub fn flip(self, flip: bool) -> Self {
-        Self { flip, ..self }
+    pub fn flip(mut self, flip: bool) -> Self {
+        self.settings.flip = given(flip);
+        self
     }
 }
 
 /// Settings of parts of the mesh.
 impl MeshPlan {
-    fn set(mut self, thing: &str, setting: Setting) -> Self {
-        self.rules.push((thing.to_owned(), setting));
+    fn on(mut self, thing: &str, settings: RuleSettings) -> Self {
+        self.rules.push((thing.to_owned(), settings));
         self
     }
 
     /// So many edges along a curve, or along each side of the faces of a surface, 1 at least.
     pub fn count(self, thing: &str, edges: u32) -> Self {
-        self.set(thing, Setting::Count(edges))
+        self.on(thing, RuleSettings { count: given(edges), ..RuleSettings::default() })
     }
 
     /// Another edge length on a curve or surface, model units, above 0.
     pub fn size_on(self, thing: &str, size: f64) -> Self {
-        self.set(thing, Setting::Size(size))
+        self.on(thing, RuleSettings { size: given(size), ..RuleSettings::default() })
     }
 
     /// Last edge over first edge along a curve, above 0.
     pub fn bias(self, curve: &str, ratio: f64) -> Self {
-        self.set(curve, Setting::Bias(ratio))
+        self.on(curve, RuleSettings { bias: given(ratio), ..RuleSettings::default() })
     }
 
     /// Other elements on a surface.
     pub fn elements_on(self, surface: &str, elements: Elements) -> Self {
-        self.set(surface, Setting::Elements(elements))
+        self.on(surface, RuleSettings { elements: given(elements), ..RuleSettings::default() })
     }
 
     /// Another method on a surface.
     pub fn method_on(self, surface: &str, method: Method) -> Self {
-        self.set(surface, Setting::Method(method))
+        self.on(surface, RuleSettings { method: given(method), ..RuleSettings::default() })
     }
 
     /// Edges of a length near a point, up to a distance from it, both model units; from there they grow.
     pub fn near(mut self, point: impl Into<[f64; 3]>, size: f64, radius: f64) -> Self {
-        self.refines.push((point.into(), size, radius));
+        self.refines.push((point.into(), NearSettings { size: given(size), radius: given(radius) }));
         self
     }
 

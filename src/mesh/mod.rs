@@ -30,4 +30,6 @@ pub use crate::mesh::report::built::Built;
 pub use crate::mesh::report::explain::Explanation;
 pub use crate::mesh::request::VERSION;
 pub use crate::mesh::request::input::Input;
-pub use crate::mesh::request::plan::{Elements, GroupRequest, Method, Plan, Rule, Target};
+pub use crate::mesh::request::methods::{Elements, Method};
+pub use crate::mesh::request::plan::{GroupRequest, Plan, Rule, Target};
+pub use crate::mesh::request::settings::{MeshSettings, Settings};

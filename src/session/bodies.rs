@@ -20,7 +20,7 @@ const SAMPLES: usize = 16;
 /// Bodies of which a face is the same one are one, and so are those that surfaces of no body join by borders that they share with
 /// them. What the curves and points of the plan lie on is listed under no body, as they are: it is made with them.
 pub fn apart(plan: &Plan, bodies: &[BTreeSet<SurfaceId>], scene: &Scene, tolerance: &Tolerance) -> BTreeMap<SurfaceId, usize> {
-    if bodies.len() < 2 || !plan.conforming {
+    if bodies.len() < 2 || !plan.settings.conforming() {
         return BTreeMap::new();
     }
     let members: BTreeSet<SurfaceId> = plan.surfaces.iter().map(|s| s.0).collect();

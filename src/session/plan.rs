@@ -11,7 +11,7 @@ use crate::lang::plans::{MeshSpec, RuleSpec};
 use crate::lang::scene::Scene;
 use crate::lang::value::{BodyKind, Home, ModuleId, ShellValue, Value};
 use crate::mesh::request::plan::{GroupRequest, Place, Refine, Target};
-use crate::mesh::{Elements, Method, Plan, Rule};
+use crate::mesh::{Plan, Rule};
 use crate::model::carry::Stage;
 use crate::model::{Model, SharedEdge, Shell, SurfaceId};
 use crate::network::{Chain, Network};
@@ -102,12 +102,12 @@ pub fn of(cx: &mut Cx, module: ModuleId, spec: &MeshSpec, sink: &mut Vec<Fault>)
     for (value, _) in &spec.things {
         finder.add(cx, (&mut plan, &mut faces), value, sink)?;
     }
-    let flip = spec.flip.filter(|said| said.0);
+    let flip = spec.settings.flip.filter(|said| said.0);
     faces.settle(&mut plan, (&scene.model, &scene.network), flip.is_some(), &tolerance)?;
     if let (Some((_, rule)), true) = (flip, plan.surfaces.is_empty()) {
         sink.push(MeshFault::RuleUnused { rule, why: "`flip` is for faces, and there is none here".to_owned() }.into());
     }
-    settings(&mut plan, spec);
+    plan.settings = spec.settings;
     for rule in &spec.rules {
         let first = plan.rules.len();
         for (value, _) in &rule.things {
@@ -118,7 +118,7 @@ pub fn of(cx: &mut Cx, module: ModuleId, spec: &MeshSpec, sink: &mut Vec<Fault>)
                 targets.retain(|t| !matches!(t, Target::Surface(s) if !meshed(s)));
             }
             for target in targets {
-                plan.rules.push(rule_on(rule, target));
+                plan.rules.push(Rule { target, settings: rule.settings, origin: rule.origin });
             }
         }
         idle_settings(rule, &plan.rules[first..], sink);
@@ -161,9 +161,9 @@ pub fn of(cx: &mut Cx, module: ModuleId, spec: &MeshSpec, sink: &mut Vec<Fault>)
         }
         plan.groups.push(GroupRequest { name: group.name.to_string(), members, origin: group.origin });
     }
-    let imprint = spec.imprint.map_or(faces.imprint, |(asked, origin)| asked.then_some(origin));
+    let imprint = spec.settings.imprint.map_or(faces.imprint, |(asked, origin)| asked.then_some(origin));
     if let Some(origin) = imprint {
-        if !plan.conforming {
+        if !plan.settings.conforming() {
             sink.push(MeshFault::RuleUnused { rule: origin, why: "`conforming: false` keeps faces apart".to_owned() }.into());
         } else {
             let mut faces: Vec<SurfaceId> = plan.surfaces.iter().map(|s| s.0).collect();
@@ -179,26 +179,13 @@ pub fn of(cx: &mut Cx, module: ModuleId, spec: &MeshSpec, sink: &mut Vec<Fault>)
     Ok((plan, scene))
 }
 
-fn settings(plan: &mut Plan, spec: &MeshSpec) {
-    plan.size = spec.size;
-    plan.chord_error = spec.chord_error;
-    plan.angle_error = spec.angle_error;
-    plan.min_size = spec.min_size;
-    plan.growth = spec.growth;
-    plan.smooth = spec.smooth;
-    plan.elements = spec.elements.map_or(Elements::Triangles, |said| said.0);
-    plan.order = spec.order.map_or(1, |said| said.0);
-    plan.method = spec.method.map_or(Method::Auto, |said| said.0);
-    plan.conforming = spec.conforming.is_none_or(|said| said.0);
-}
-
 /// W701 for settings that say nothing about what their rule speaks of: steps of a face, elements of a curve.
 fn idle_settings(spec: &RuleSpec, rules: &[Rule], sink: &mut Vec<Fault>) {
     let faces = rules.iter().any(|rule| matches!(rule.target, Target::Surface(_) | Target::Patches(_)));
     let curves = rules.iter().any(|rule| matches!(rule.target, Target::Chain(_) | Target::Edge(_)));
     // A count on faces is for each of their sides.
-    let of_curves = [("bias", spec.bias.map(|s| s.1))];
-    let of_faces = [("elements", spec.elements.map(|s| s.1)), ("method", spec.method.map(|s| s.1))];
+    let of_curves = [("bias", spec.settings.bias.map(|s| s.1))];
+    let of_faces = [("elements", spec.settings.elements.map(|s| s.1)), ("method", spec.settings.method.map(|s| s.1))];
     let mut idle = |settings: &[(&str, Option<Origin>)], what: &str| {
         for (key, rule) in settings {
             if let Some(rule) = *rule {
@@ -212,11 +199,6 @@ fn idle_settings(spec: &RuleSpec, rules: &[Rule], sink: &mut Vec<Fault>) {
     if curves && !faces {
         idle(&of_faces, "faces");
     }
-}
-
-fn rule_on(spec: &RuleSpec, target: Target) -> Rule {
-    let RuleSpec { count, size, bias, elements, method, origin, .. } = spec;
-    Rule { target, count: *count, size: *size, bias: *bias, elements: *elements, method: *method, origin: *origin }
 }
 
 /// The surfaces that a value is or holds.

@@ -28,7 +28,7 @@ pub fn of_patch(input: &Input, patch: PatchId) -> Vec<Part> {
     }
     let borders: Vec<Box<dyn Fn(f64) -> DVec2 + '_>> = (0..surface.n_sides()).filter_map(|k| border(surface, k)).collect();
     let outlines = surface.outlines();
-    let limited = input.plan.chord_error.is_some();
+    let limited = input.plan.settings.chord_error.is_some();
     let mut parts = Vec::new();
     for (axis, lines, others) in [(0, us, vs), (1, vs, us)] {
         for at in lines.iter().flat_map(|x| surface.copies_along(axis, *x)) {

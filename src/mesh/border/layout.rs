@@ -4,7 +4,8 @@ use glam::DVec3;
 
 use crate::mesh::border::lost::{self, Lost};
 use crate::mesh::request::input::Input;
-use crate::mesh::request::plan::{Elements, Method, Target};
+use crate::mesh::request::methods::{Elements, Method};
+use crate::mesh::request::plan::Target;
 use crate::model::gather::Station;
 use crate::model::glue::preference;
 use crate::model::segments::{Part, SegmentUse, Segments, segments};
@@ -229,8 +230,8 @@ impl Layout {
             patch,
             surface: record.surface,
             flipped,
-            elements: plan.elements,
-            method: plan.method,
+            elements: plan.settings.elements(),
+            method: plan.settings.method(),
             free: false,
             size: (0.0, None),
             near: reach(input, std::iter::once(patch)),

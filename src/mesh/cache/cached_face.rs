@@ -81,7 +81,7 @@ pub(crate) fn key(
     let mut to = known.on("free face", face.surface).text(env!("CARGO_PKG_VERSION")).number(u64::from(crate::mesh::request::VERSION));
     made.input.tolerance.tell(&mut to);
     (face.elements, face.method, face.size.0).tell(&mut to);
-    (Limits::of(made.input), plan.smooth.map(|n| n.0), (plan.slope(), plan.most_elements)).tell(&mut to);
+    (Limits::of(made.input), plan.settings.smooth.map(|n| n.0), (plan.slope(), plan.most_elements)).tell(&mut to);
     (made.wanted.floor, made.wanted.written).tell(&mut to);
     (rules.items(), rules.slope()).tell(&mut to);
     // Numbers of nodes depend on the whole mesh: here by first appearance.

@@ -8,7 +8,8 @@ use std::collections::BTreeMap;
 use crate::base::digest::{Digest, StableHash, StableHasher};
 use crate::mesh::border::layout::{Face, FaceSide, Layout};
 use crate::mesh::request::input::Input;
-use crate::mesh::request::plan::{Elements, GroupRequest, Method, Place, Plan, Refine, Rule, Target};
+use crate::mesh::request::methods::{Elements, Method};
+use crate::mesh::request::plan::{GroupRequest, Place, Plan, Refine, Rule, Target};
 use crate::mesh::size::sizing::links_of;
 use crate::model::{PatchId, SurfaceId};
 use crate::network::Chain;
@@ -48,16 +49,7 @@ impl Teller<'_> {
             surfaces,
             curves,
             points,
-            size: _,
-            chord_error,
-            angle_error,
-            min_size,
-            growth,
-            smooth,
-            elements,
-            order,
-            method,
-            conforming,
+            settings,
             imprint,
             // The tracks and faces of the layouts tell it.
             glue: _,
@@ -67,8 +59,7 @@ impl Teller<'_> {
             groups,
             most_elements,
         } = self.input.plan;
-        (name, size, (chord_error.map(|c| c.0), angle_error.map(|a| a.0))).tell(to);
-        (*elements, *order, (*method, *conforming, *most_elements)).tell(to);
+        (name, size, (settings, *most_elements)).tell(to);
         surfaces.len().tell(to);
         for (id, flipped) in surfaces {
             let named = &self.input.model.surfaces[id.index()];
@@ -77,7 +68,6 @@ impl Teller<'_> {
         (curves, points, imprint.as_ref().map(|i| &i.0)).tell(to);
         rules.len().tell(to);
         rules.iter().for_each(|rule| self.rule(rule, to));
-        (min_size.map(|s| s.0), growth.map(|g| g.0), smooth.map(|n| n.0)).tell(to);
         refines.len().tell(to);
         for Refine { at, size, radius, origin: _ } in refines {
             (at.len(), size.0, *radius).tell(to);
@@ -95,10 +85,9 @@ impl Teller<'_> {
     }
 
     fn rule(&self, rule: &Rule, to: &mut StableHasher) {
-        let Rule { target, count, size, bias, elements, method, origin: _ } = rule;
+        let Rule { target, settings, origin: _ } = rule;
         self.target(target, to);
-        (count.map(|c| c.0), size.map(|s| s.0), bias.map(|b| b.0)).tell(to);
-        (elements.map(|e| e.0), method.map(|m| m.0)).tell(to);
+        settings.tell(to);
     }
 
     /// What a rule or group speaks of, and what of the mesh that is.

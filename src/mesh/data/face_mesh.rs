@@ -8,7 +8,7 @@ use crate::mesh::data::face_geometry::{FaceGeometry, FaceNodes};
 use crate::mesh::mapped::grid;
 use crate::mesh::mapped::trilateral::LatticeIds;
 use crate::mesh::request::decider::{Decider, Tally};
-use crate::mesh::request::plan::Elements;
+use crate::mesh::request::methods::Elements;
 use crate::model::SurfaceId;
 use crate::surface::Surface;
 

@@ -8,7 +8,7 @@ use crate::mesh::divide::row_demand::RowDemand;
 use crate::mesh::divide::strips::{Conflict, Relation, Stretch};
 use crate::mesh::divide::verdict::Verdict;
 use crate::mesh::request::input::Input;
-use crate::mesh::request::plan::Elements;
+use crate::mesh::request::methods::Elements;
 use crate::mesh::size::sizing::{Decision, MOST, Sizing};
 
 /// A direction of a face as an unknown: what its rows want.
@@ -159,7 +159,7 @@ impl Relations {
         let written = |segment: usize| -> (u32, Origin) {
             let (count, rule) = sizing.decisions.get(segment).and_then(|d| d.count).unwrap_or((0, usize::MAX));
             let rule = plan.rules.get(rule);
-            (count, rule.map_or(Origin::NONE, |r| r.count.map_or(r.origin, |c| c.1)))
+            (count, rule.map_or(Origin::NONE, |r| r.settings.count.map_or(r.origin, |c| c.1)))
         };
         let place = |relation: usize| {
             let face = &layout.faces[self.face_of[relation]];
@@ -198,7 +198,7 @@ impl Relations {
         let plan = input.plan;
         let row = needs.checked_sub(self.first_row).map(|r| &self.rows[r]);
         let at = row.map_or_else(|| layout.point(needs, 0.5), |r| crate::mesh::border::layout::middle(input, &layout.faces[r.face]));
-        let angle = plan.angle_error.filter(|_| row.is_some_and(|r| r.limit == MeshLimit::AngleError));
+        let angle = plan.settings.angle_error.filter(|_| row.is_some_and(|r| r.limit == MeshLimit::AngleError));
         let asked = angle.map(|angle| (MeshLimit::AngleError, angle.1)).or_else(|| plan.bend_limit());
         match asked {
             Some((limit, says)) if least > 3 || row.is_some() => MeshFault::CountTooCoarse { count, limit, says, needed: least, at }.into(),

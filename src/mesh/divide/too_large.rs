@@ -8,7 +8,7 @@ use crate::mesh::divide::relations::Relations;
 use crate::mesh::divide::row_demand;
 use crate::mesh::request::input::Input;
 use crate::mesh::request::limits::Limits;
-use crate::mesh::request::plan::Elements;
+use crate::mesh::request::methods::Elements;
 use crate::mesh::request::work::{allow, too_many};
 use crate::mesh::size::sizing::Sizing;
 use crate::mesh::size::too_large::{of_segment, too_many_steps};
@@ -17,10 +17,10 @@ use crate::mesh::size::too_large::{of_segment, too_many_steps};
 pub(crate) fn of_count(input: &Input, layout: &Layout, sizing: &Sizing, (k, count): (usize, u32)) -> Origin {
     let (plan, decision) = (input.plan, &sizing.decisions[k]);
     let own = decision.count.map_or(decision.demand, |c| c.0).max(decision.least);
-    let (Some(limit), true) = (plan.chord_error.or(plan.angle_error), f64::from(count) > BY_ROWS * f64::from(own)) else {
+    let (Some(limit), true) = (plan.settings.chord_error.or(plan.settings.angle_error), f64::from(count) > BY_ROWS * f64::from(own)) else {
         return of_segment(input, layout, sizing, k);
     };
-    let Some(angle) = plan.angle_error.filter(|_| plan.chord_error.is_some()) else { return limit.1 };
+    let Some(angle) = plan.settings.angle_error.filter(|_| plan.settings.chord_error.is_some()) else { return limit.1 };
     let steps = |limits: Limits| -> f64 {
         let beside = layout.faces.iter().filter(|f| !f.free && f.segments().any(|s| s == k));
         let demands = beside.flat_map(|face| {

@@ -16,7 +16,7 @@ use crate::mesh::data::quality::least_angle;
 use crate::mesh::deviation::triangle;
 use crate::mesh::mapped::trilateral::LatticeIds;
 use crate::mesh::request::limits::Limits;
-use crate::mesh::request::plan::{Elements, Method};
+use crate::mesh::request::methods::{Elements, Method};
 use crate::mesh::size::border_spacing::{FILLED, SPACING};
 use crate::mesh::size::sizing::Sizing;
 use crate::surface::Surface;

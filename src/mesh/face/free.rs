@@ -9,7 +9,7 @@ use crate::mesh::chart::face_input::{FaceInput, prepared};
 use crate::mesh::chart::outline::Outline;
 use crate::mesh::data::face_geometry::Free;
 use crate::mesh::data::face_mesh::{FaceMesh, FreeInside};
-use crate::mesh::request::plan::Elements;
+use crate::mesh::request::methods::Elements;
 use crate::mesh::tri::fit::fitting;
 use crate::mesh::tri::trouble::fault;
 

@@ -8,7 +8,7 @@ use crate::mesh::data::face_mesh::FaceMesh;
 use crate::mesh::mapped::grid::{self, Grid};
 use crate::mesh::mapped::trilateral::{Blocks, Lattice, LatticeIds};
 use crate::mesh::request::input::Input;
-use crate::mesh::request::plan::Elements;
+use crate::mesh::request::methods::Elements;
 
 /// The geometry and ids of a face; `rows` are the counts of its rows, `first` becomes its first inner node.
 pub fn prepare(input: &Input, layout: &Layout, nodes: &Nodes, face: &Face, rows: &[u32]) -> Result<FaceMesh> {

@@ -18,7 +18,7 @@ use crate::mesh::divide::verdict::Verdict;
 use crate::mesh::face::twins::{Edge, is_upright, ordered, twins};
 use crate::mesh::request::input::Input;
 use crate::mesh::request::limits::Limits;
-use crate::mesh::request::plan::{Elements, Method};
+use crate::mesh::request::methods::{Elements, Method};
 use crate::surface::{Nearest, Surface};
 
 /// What of two faces or more falls together: an edge, or two nodes of an element, with the faces.

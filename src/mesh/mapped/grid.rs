@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::base::par;
 use crate::base::tolerance::Tolerance;
-use crate::mesh::request::plan::Elements;
+use crate::mesh::request::methods::Elements;
 use crate::surface::Surface;
 
 /// Rows of cells that one thread takes at a time.

@@ -87,7 +87,7 @@ fn finish(input: &Input, layout: Layout, done: Done) -> Part {
         ranges.push(((face.patch, ready.surface), triangles, quads));
     }
     lines::add(input, &layout, &nodes, &mut mesh);
-    if input.plan.order == 2 {
+    if input.plan.settings.order() == 2 {
         second_order::add(input, &layout, &nodes, &prepared, &mut mesh);
     }
     mesh.border_error = border_error::of_free_borders(&layout, &nodes);

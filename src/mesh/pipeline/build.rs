@@ -59,8 +59,8 @@ impl Outline {
         let input = &within(input, &evened);
         let patches: Vec<(PatchId, bool)> =
             input.plan.surfaces.iter().flat_map(|(s, flipped)| input.model.patches_of(*s).map(move |p| (p, *flipped))).collect();
-        let size = input.plan.size.map_or_else(|| default_size(input, &patches), |s| s.0);
-        let layouts = if input.plan.conforming {
+        let size = input.plan.settings.size.map_or_else(|| default_size(input, &patches), |s| s.0);
+        let layouts = if input.plan.settings.conforming() {
             // What is of no body, with the curves and points, then each body.
             let of = |p: &PatchId| input.plan.bodies.get(&input.model.patches[p.index()].surface).copied();
             let all: BTreeSet<Option<usize>> = input.plan.bodies.values().copied().map(Some).chain([None]).collect();
@@ -126,14 +126,14 @@ impl Outline {
             remarks.extend(first.layout.lost.iter().chain(others.iter().flat_map(|part| &part.layout.lost)).copied().map(Remark::Lost));
             let mut leaves = Vec::with_capacity(parts.len());
             // Faces that were asked not to share nodes touch as they were asked to.
-            for part in parts.iter().filter(|_| input.plan.conforming) {
+            for part in parts.iter().filter(|_| input.plan.settings.conforming()) {
                 let (touches, own) = contacts::find(input, &part.layout, &part.nodes, &part.mesh);
                 contacts::refuse_overlaps(input, &touches)?;
                 leaves.push(own);
                 remarks.extend(touches.into_iter().map(Remark::Touch));
             }
             // Bodies were asked not to share nodes, and may touch; none is where another one is.
-            if input.plan.conforming {
+            if input.plan.settings.conforming() {
                 let bodies: Vec<Body> = parts.iter().map(|part| Body { layout: &part.layout, mesh: &part.mesh }).collect();
                 remarks.extend(contact_bodies::find(input, &bodies, leaves).into_iter().map(Remark::Touch));
             }
@@ -166,7 +166,7 @@ fn merge(input: &Input, mut parts: Vec<Part>) -> Result<Built> {
         built.explanation.append(&mut part.explanation);
         built.mesh.append(mesh);
     }
-    (built.mesh.name, built.mesh.order) = (input.plan.name.clone(), input.plan.order);
+    (built.mesh.name, built.mesh.order) = (input.plan.name.clone(), input.plan.settings.order());
     let named: Vec<(&Layout, &Nodes, u32)> = parts.iter().zip(offsets).map(|(p, offset)| (&p.layout, &p.nodes, offset)).collect();
     let mut groups = Vec::new();
     let mut done: BTreeSet<SurfaceId> = BTreeSet::new();
@@ -238,6 +238,6 @@ fn default_size(input: &Input, patches: &[(PatchId, bool)]) -> f64 {
     }
     let diagonal = around.diagonal();
     // What is to be sparing has its chord error for a size.
-    let share = if input.plan.method.is_coarse() && input.plan.chord_error.is_some() { 1.0 } else { SHARE };
+    let share = if input.plan.settings.method().is_coarse() && input.plan.settings.chord_error.is_some() { 1.0 } else { SHARE };
     if diagonal > 0.0 { share * diagonal } else { 1.0 }
 }

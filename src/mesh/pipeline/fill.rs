@@ -113,7 +113,7 @@ pub(crate) fn fill(input: &Input, border: &[DVec3], prepared: &[FaceMesh], (keye
     let mut all = Vec::with_capacity(on_border + sum(&|p| p.inner));
     all.extend_from_slice(border);
     all.resize(on_border + sum(&|p| p.inner), DVec3::ZERO);
-    let mut mesh = Mesh { name: input.plan.name.clone(), order: input.plan.order, nodes: all, ..Mesh::default() };
+    let mut mesh = Mesh { name: input.plan.name.clone(), order: input.plan.settings.order(), nodes: all, ..Mesh::default() };
     mesh.triangles = vec![[0; 3]; sum(&|p| p.triangles)];
     mesh.quads = vec![[0; 4]; sum(&|p| p.quads)];
     let (border, mut inner) = mesh.nodes.split_at_mut(on_border);

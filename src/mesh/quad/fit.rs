@@ -19,7 +19,7 @@ use crate::mesh::quad::maker::{Maker, nodes};
 use crate::mesh::quad::net::Net;
 use crate::mesh::request::decider::Decider;
 use crate::mesh::request::limits::Limits;
-use crate::mesh::request::plan::Elements;
+use crate::mesh::request::methods::Elements;
 use crate::mesh::request::sources::Sources;
 use crate::mesh::tri::fit::{Fit, WANTED_TREE, near};
 use crate::mesh::tri::graded_size::{Background, GradedSize};
@@ -88,7 +88,7 @@ fn fitting(
     let surface = &made.input.model.surfaces[face.surface.index()].surface;
     let limits = Limits::of(made.input);
     let bent = !surface.is_flat() && (limits.chord.is_some() || limits.angle.is_some());
-    let smooth = made.input.plan.smooth.map_or(SMOOTH, |n| n.0 as usize);
+    let smooth = made.input.plan.settings.smooth.map_or(SMOOTH, |n| n.0 as usize);
     let settings = OptimizeSettings { smooth, beyond: 1.0, fine: FINEST, wanted: WANTED_TREE, fair: 1.0, longest: LONGEST / SPACING };
     let rules = near(made, face, outline);
     let longest = Longest::new(face.size.0, outline, &rules).graded(outline, made.input.plan.slope());

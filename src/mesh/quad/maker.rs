@@ -16,7 +16,7 @@ use crate::mesh::quad::pair::{Alone, pair};
 use crate::mesh::quad::smooth::Smoother;
 use crate::mesh::quad::split::split;
 use crate::mesh::quad::swap::Swapper;
-use crate::mesh::request::plan::{Elements, Method};
+use crate::mesh::request::methods::{Elements, Method};
 use crate::mesh::request::size_requests::floor_keeps;
 use crate::mesh::request::work::allow;
 use crate::mesh::tri::build::{Lattice, Task, initial_triangulation};

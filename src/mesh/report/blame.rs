@@ -14,7 +14,7 @@ use crate::mesh::chart::face_input::FaceInput;
 use crate::mesh::data::face_mesh::{FaceMesh, element_ranges};
 use crate::mesh::data::mesh::Mesh;
 use crate::mesh::face::foresee::{self, Foreseen, SHARP};
-use crate::mesh::request::plan::Method;
+use crate::mesh::request::methods::Method;
 use crate::mesh::request::sources::distance_to_segment;
 use crate::mesh::size::remark::Remark;
 use crate::mesh::size::sizing::Sizing;

@@ -6,7 +6,7 @@ use crate::mesh::data::face_geometry::FaceNodes;
 use crate::mesh::data::face_mesh::FaceMesh;
 use crate::mesh::report::reasons;
 use crate::mesh::request::input::Input;
-use crate::mesh::request::plan::Method;
+use crate::mesh::request::methods::Method;
 use crate::mesh::size::sizing::{Sizing, elements_name};
 use crate::model::SurfaceId;
 

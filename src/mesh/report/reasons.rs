@@ -22,7 +22,7 @@ pub fn clause(input: &Input, number: usize) -> String {
         Some(refine) => refined(input, refine),
         None => {
             let rule = &input.plan.rules[number];
-            let what = match (&rule.count, &rule.size) {
+            let what = match (&rule.settings.count, &rule.settings.size) {
                 (Some((count, _)), _) => format!("count {count}"),
                 (None, Some((size, _))) => format!("size {}", real(*size)),
                 _ => "settings".to_owned(),
@@ -85,7 +85,7 @@ fn cause(input: &Input, why: Why) -> String {
     match why {
         Why::Size => "the size".to_owned(),
         Why::Refined(k) => refined(input, k),
-        Why::Bends => match (input.plan.chord_error, input.plan.angle_error) {
+        Why::Bends => match (input.plan.settings.chord_error, input.plan.settings.angle_error) {
             (Some(_), Some(_)) => "chord_error or angle_error".to_owned(),
             (None, Some(_)) => "angle_error".to_owned(),
             _ => "chord_error".to_owned(),

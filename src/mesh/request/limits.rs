@@ -18,7 +18,7 @@ impl Limits {
     /// Of a plan.
     pub fn of(input: &Input) -> Self {
         let plan = input.plan;
-        Self { chord: plan.chord_error.map(|c| c.0), angle: plan.angle_error.map(|a| a.0), near: input.tolerance.point }
+        Self { chord: plan.settings.chord_error.map(|c| c.0), angle: plan.settings.angle_error.map(|a| a.0), near: input.tolerance.point }
     }
 
     /// The same where no step turns by more than this, radians.

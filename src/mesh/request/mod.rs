@@ -3,8 +3,10 @@
 pub mod decider;
 pub mod input;
 pub mod limits;
+pub mod methods;
 pub mod plan;
 pub mod recall;
+pub mod settings;
 pub mod size_requests;
 pub mod sources;
 pub mod work;

@@ -8,58 +8,10 @@ use crate::base::bbox::Box3;
 use crate::base::fault::MeshLimit;
 use crate::base::limits::MESH_ELEMENTS;
 use crate::base::origin::Origin;
+use crate::mesh::request::settings::{MeshSettings, RuleSettings};
 use crate::model::imprint::Imprint;
 use crate::model::{Course, PatchId, SurfaceId};
 use crate::network::Chain;
-
-/// Which elements a face gets.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Elements {
-    /// Triangles only.
-    Triangles,
-    /// Quads only, or an error.
-    Quads,
-    /// Quads where they fit, triangles elsewhere.
-    Mixed,
-}
-
-/// How a face is meshed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Method {
-    /// Mapped where it fits and its elements are well shaped, else Delaunay.
-    Auto,
-    /// Mapped, or an error.
-    Mapped,
-    /// Cells between lines of constant u and v, triangles beside borders.
-    Isoline,
-    /// Nodes grown over the surface, Delaunay triangles improved in space.
-    Delaunay,
-    /// Nodes at the corners of a quadtree's cells, Delaunay triangles improved in space.
-    Quadtree,
-    /// As few triangles as keep the limits, however long.
-    Display,
-}
-
-impl Method {
-    /// Whether sides are only as short as limits and written sizes ask for, and triangles as long as they may be.
-    pub fn is_coarse(self) -> bool {
-        matches!(self, Self::Isoline | Self::Display)
-    }
-
-    /// Its word, where it makes nothing but triangles.
-    pub fn of_triangles(self) -> Option<&'static str> {
-        match self {
-            Self::Display => Some("display"),
-            Self::Isoline => Some("isoline"),
-            Self::Auto | Self::Mapped | Self::Delaunay | Self::Quadtree => None,
-        }
-    }
-
-    /// Whether it makes faces freely, however many sides they have.
-    pub fn is_free(self) -> bool {
-        matches!(self, Self::Delaunay | Self::Quadtree | Self::Isoline | Self::Display)
-    }
-}
 
 /// What a rule or a group speaks of.
 #[derive(Clone, Debug)]
@@ -92,16 +44,8 @@ impl Target {
 pub struct Rule {
     /// What it speaks of.
     pub target: Target,
-    /// Steps over the whole length, with the expression that says so; on a surface, over each of its sides.
-    pub count: Option<(u32, Origin)>,
-    /// Target edge length, model units.
-    pub size: Option<(f64, Origin)>,
-    /// Last step over first step.
-    pub bias: Option<(f64, Origin)>,
-    /// Elements of faces.
-    pub elements: Option<(Elements, Origin)>,
-    /// Method of faces.
-    pub method: Option<(Method, Origin)>,
+    /// What it says.
+    pub settings: RuleSettings,
     /// The clause.
     pub origin: Origin,
 }
@@ -109,7 +53,7 @@ pub struct Rule {
 impl Rule {
     /// A rule that says nothing yet.
     pub fn on(target: Target, origin: Origin) -> Self {
-        Self { target, count: None, size: None, bias: None, elements: None, method: None, origin }
+        Self { target, settings: RuleSettings::default(), origin }
     }
 }
 
@@ -161,26 +105,8 @@ pub struct Plan {
     pub curves: Vec<(String, Chain)>,
     /// Points that become nodes.
     pub points: Vec<DVec3>,
-    /// Target edge length, model units, with its expression; `None`: a 20th of the diagonal.
-    pub size: Option<(f64, Origin)>,
-    /// Largest distance mesh–surface, model units.
-    pub chord_error: Option<(f64, Origin)>,
-    /// Largest turn of the normal across an element, radians.
-    pub angle_error: Option<(f64, Origin)>,
-    /// Floor of the size, model units, with its expression.
-    pub min_size: Option<(f64, Origin)>,
-    /// Ratio of neighbouring sizes, with its expression; `None`: [`GROWTH`].
-    pub growth: Option<(f64, Origin)>,
-    /// Rounds of smoothing of free faces, with their expression; `None`: until nothing moves.
-    pub smooth: Option<(u32, Origin)>,
-    /// Kind of elements.
-    pub elements: Elements,
-    /// 1 or 2.
-    pub order: u8,
-    /// How faces are meshed.
-    pub method: Method,
-    /// Neighbouring faces share nodes.
-    pub conforming: bool,
+    /// What is written of the whole mesh.
+    pub settings: MeshSettings,
     /// What joins faces that touch without a shared border, with the expression that asks for it.
     pub imprint: Option<(Imprint, Origin)>,
     /// How far apart borders of a surface and of its neighbours may be and still be one edge, model units; the tolerance for
@@ -202,9 +128,9 @@ impl Plan {
     /// A limit as it is written, with its expression: model units or radians.
     pub fn limit(&self, limit: MeshLimit) -> Option<(f64, Origin)> {
         match limit {
-            MeshLimit::Size => self.size,
-            MeshLimit::ChordError => self.chord_error,
-            MeshLimit::AngleError => self.angle_error,
+            MeshLimit::Size => self.settings.size,
+            MeshLimit::ChordError => self.settings.chord_error,
+            MeshLimit::AngleError => self.settings.angle_error,
         }
     }
 
@@ -216,7 +142,7 @@ impl Plan {
 
     /// What asks for the size: its expression, or the mesh where none is written.
     pub fn size_origin(&self) -> Origin {
-        self.size.map_or(self.origin, |size| size.1)
+        self.settings.size.map_or(self.origin, |size| size.1)
     }
 
     /// A mesh of surfaces with every setting at its default.
@@ -227,16 +153,7 @@ impl Plan {
             surfaces,
             curves: Vec::new(),
             points: Vec::new(),
-            size: None,
-            chord_error: None,
-            angle_error: None,
-            min_size: None,
-            growth: None,
-            smooth: None,
-            elements: Elements::Triangles,
-            order: 1,
-            method: Method::Auto,
-            conforming: true,
+            settings: MeshSettings::default(),
             imprint: None,
             glue: BTreeMap::new(),
             bodies: BTreeMap::new(),
@@ -254,12 +171,9 @@ impl Plan {
 
     /// What lengths grow by a unit of distance.
     pub fn slope(&self) -> f64 {
-        self.growth.map_or(GROWTH, |g| g.0) - 1.0
+        self.settings.growth() - 1.0
     }
 }
-
-/// Ratio of neighbouring sizes where none is written.
-pub const GROWTH: f64 = 1.3;
 
 /// Height of an equilateral triangle of side 1.
 pub(crate) const TALL: f64 = 0.866_025_403_784_438_6;

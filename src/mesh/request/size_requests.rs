@@ -30,16 +30,17 @@ impl SizeRequests {
     /// Fails with E707 where a size is below a written `min_size`.
     pub fn new(input: &Input, size: f64) -> Result<Self> {
         let plan = input.plan;
-        let written = plan.rules.iter().filter_map(|r| r.size).chain(plan.refines.iter().map(|r| r.size)).chain(plan.size);
-        if let Some(floor) = plan.min_size
+        let written =
+            plan.rules.iter().filter_map(|r| r.settings.size).chain(plan.refines.iter().map(|r| r.size)).chain(plan.settings.size);
+        if let Some(floor) = plan.settings.min_size
             && let Some(size) = written.clone().find(|s| s.0 < floor.0)
         {
             return Err(MeshFault::BelowFloor { size, floor }.into());
         }
         let least = written.map(|s| s.0).fold(f64::INFINITY, f64::min);
-        let floor = plan.min_size.map_or_else(|| (FLOOR * size).min(least), |s| s.0);
+        let floor = plan.settings.min_size.map_or_else(|| (FLOOR * size).min(least), |s| s.0);
         let items = plan.refines.iter().enumerate().flat_map(|(k, refine)| sources_of(refine, k as u32));
-        Ok(Self { sources: Sources::new(items.collect(), plan.slope()), floor, written: plan.min_size.map_or(0.0, |s| s.0) })
+        Ok(Self { sources: Sources::new(items.collect(), plan.slope()), floor, written: plan.settings.min_size.map_or(0.0, |s| s.0) })
     }
 }
 
@@ -63,7 +64,7 @@ fn sources_of(refine: &Refine, tag: u32) -> Vec<Source> {
 pub fn floor_keeps(input: &Input, needed: f64, at: DVec3) -> Fault {
     let plan = input.plan;
     let (limit, says) = plan.bend_limit().unwrap_or((MeshLimit::Size, plan.origin));
-    MeshFault::FloorKeeps { limit, says, floor: plan.min_size.unwrap_or((needed, plan.origin)), needed, at }.into()
+    MeshFault::FloorKeeps { limit, says, floor: plan.settings.min_size.unwrap_or((needed, plan.origin)), needed, at }.into()
 }
 
 /// How much above the least length on a patch the one found may be.

@@ -15,7 +15,7 @@ use crate::mesh::deviation::{poles, triangle};
 use crate::mesh::request::decider::Why;
 use crate::mesh::request::input::Input;
 use crate::mesh::request::limits::Limits;
-use crate::mesh::request::plan::Method;
+use crate::mesh::request::methods::Method;
 use crate::mesh::request::size_requests::SizeRequests;
 use crate::mesh::request::sources::{Body, STEEP, Source, Sources};
 use crate::mesh::size::gaps::{self, Beside, PLACES};

@@ -4,7 +4,7 @@ use crate::base::fault::{MeshFault, Result};
 use crate::base::text::real;
 use crate::mesh::border::layout::{Face, Layout, Uneven, middle};
 use crate::mesh::request::input::Input;
-use crate::mesh::request::plan::{Elements, Method};
+use crate::mesh::request::methods::{Elements, Method};
 use crate::surface::{Domain, Surface};
 
 /// Chooses how each face is made: mapped where it can be and no other method is written, else freely.

@@ -94,7 +94,7 @@ fn is_off(input: &Input, own: &Face, surface: &Surface) -> bool {
 
 /// E703 where an edge is glued so far beside a face that nothing is left of the chord error.
 pub fn refuse(input: &Input, layout: &Layout, limits: &Limits, rows: &[Vec<Beside>]) -> Result<()> {
-    let (Some(limit), Some((_, says))) = (limits.chord, input.plan.chord_error) else { return Ok(()) };
+    let (Some(limit), Some((_, says))) = (limits.chord, input.plan.settings.chord_error) else { return Ok(()) };
     for (face, rows) in layout.faces.iter().zip(rows) {
         let surface = &input.model.surfaces[face.surface.index()].surface;
         let all = rows.iter().filter(|_| is_off(input, face, surface)).flat_map(|row| row.off.iter().zip(&row.points));

@@ -15,7 +15,7 @@ use crate::base::{job, par};
 use crate::mesh::border::layout::Face;
 use crate::mesh::chart::face_input::{FaceInput, outlined};
 use crate::mesh::chart::outline::{Outline, inside};
-use crate::mesh::request::plan::Elements;
+use crate::mesh::request::methods::Elements;
 use crate::mesh::request::sources::distance_to_segment;
 use crate::model::glue::{join, root};
 
@@ -82,7 +82,7 @@ fn of_face(made: &FaceInput, face: &Face) -> Vec<Narrow> {
 
 /// The least step that facing borders ask for on a face, model units.
 pub fn floor(made: &FaceInput, face: &Face) -> f64 {
-    made.input.plan.min_size.map_or(LEAST * face.size.0, |s| s.0).max(made.input.tolerance.point)
+    made.input.plan.settings.min_size.map_or(LEAST * face.size.0, |s| s.0).max(made.input.tolerance.point)
 }
 
 /// The piece of a segment between two nodes.
@@ -176,7 +176,7 @@ impl ProximityScan<'_> {
         let kept = inside(all, self.outline);
         let floor = floor(self.made, self.face);
         let point = SHORTEST * self.made.input.tolerance.point;
-        let deepest = if self.made.input.plan.min_size.is_some() { floor } else { point.min(floor) };
+        let deepest = if self.made.input.plan.settings.min_size.is_some() { floor } else { point.min(floor) };
         let across = if self.face.elements == Elements::Triangles { ACROSS } else { ACROSS_QUADS };
         let mut close: Vec<(u32, [u32; 2], f64)> = Vec::new();
         for t in (0..kept.len()).filter(|t| kept[*t]) {

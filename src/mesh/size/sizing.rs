@@ -16,7 +16,8 @@ use crate::mesh::deviation::curve::{least_steps, wanted_steps};
 use crate::mesh::request::decider::Why;
 use crate::mesh::request::input::Input;
 use crate::mesh::request::limits::Limits;
-use crate::mesh::request::plan::{Elements, Plan, Rule, Target};
+use crate::mesh::request::methods::Elements;
+use crate::mesh::request::plan::{Plan, Rule, Target};
 use crate::mesh::request::recall::RecallSteps;
 use crate::mesh::request::size_requests::{SizeRequests, least_on};
 use crate::mesh::size::border_spacing::{self, BorderSpacing, SPACING, SpacingInput};
@@ -293,7 +294,7 @@ impl Sizing {
             own.sort_by_key(|(alone, index, _)| (*alone, *index));
             let alone = |index: usize| matches!(input.plan.rules[index].target, Target::Patches(_));
             for (_, index, rule) in own {
-                let says = [rule.size.is_some(), rule.elements.is_some(), rule.method.is_some()];
+                let says = [rule.settings.size.is_some(), rule.settings.elements.is_some(), rule.settings.method.is_some()];
                 for (k, key) in ["size", "elements", "method"].into_iter().enumerate() {
                     if says[k]
                         && let Some(old) = last[k].replace(index)
@@ -304,14 +305,14 @@ impl Sizing {
                 }
             }
             let rule = |k: usize| last[k].map(|i: usize| (i, &input.plan.rules[i]));
-            if let Some((i, (s, _))) = rule(0).and_then(|(i, r)| r.size.map(|s| (i, s))) {
+            if let Some((i, (s, _))) = rule(0).and_then(|(i, r)| r.settings.size.map(|s| (i, s))) {
                 face.size = (s, Some(i));
             }
-            if let Some((i, (e, _))) = rule(1).and_then(|(i, r)| r.elements.map(|e| (i, e))) {
+            if let Some((i, (e, _))) = rule(1).and_then(|(i, r)| r.settings.elements.map(|e| (i, e))) {
                 face.elements = e;
                 self.taken[i] = true;
             }
-            if let Some((i, (m, _))) = rule(2).and_then(|(i, r)| r.method.map(|m| (i, m))) {
+            if let Some((i, (m, _))) = rule(2).and_then(|(i, r)| r.settings.method.map(|m| (i, m))) {
                 face.method = m;
                 self.taken[i] = true;
             }
@@ -325,11 +326,11 @@ impl Sizing {
             if !what.is_empty() {
                 if !layout.faces.iter().any(|f| rule.target.faces(f.patch, f.surface).is_some()) {
                     self.homeless[index] = Some(format!("that {what} is not in this mesh"));
-                } else if rule.bias.is_some()
-                    && rule.count.is_none()
-                    && rule.size.is_none()
-                    && rule.elements.is_none()
-                    && rule.method.is_none()
+                } else if rule.settings.bias.is_some()
+                    && rule.settings.count.is_none()
+                    && rule.settings.size.is_none()
+                    && rule.settings.elements.is_none()
+                    && rule.settings.method.is_none()
                 {
                     self.homeless[index] = Some("`bias` grows the steps along a curve, this is a face".to_owned());
                 }
@@ -351,19 +352,19 @@ impl Sizing {
             self.homeless[index] = Some(format!("that {what} is {where_to}"));
             return Ok(());
         }
-        if rule.count.is_none() && rule.size.is_none() && rule.bias.is_none() {
+        if rule.settings.count.is_none() && rule.settings.size.is_none() && rule.settings.bias.is_none() {
             self.homeless[index] = Some(format!("`elements` and `method` apply to faces, this is {} {what}", article(what)));
             return Ok(());
         }
         for Lines { uses, links, rank, length } in lines {
             let rank = *rank;
-            if let Some((count, origin)) = rule.count {
+            if let Some((count, origin)) = rule.settings.count {
                 let shares = count_shares(uses, links, (count, near))
                     .map_err(|links| MeshFault::CountBelowLinks { count: (count, origin), links })?;
                 for (u, n) in uses.iter().zip(shares) {
                     settle(&mut division[u.segment], Ruled { rank, rule: index, value: Division::Count(n) }, "count", &mut self.overridden);
                 }
-            } else if let Some((size, _)) = rule.size {
+            } else if let Some((size, _)) = rule.settings.size {
                 for u in uses {
                     settle(
                         &mut division[u.segment],
@@ -373,7 +374,7 @@ impl Sizing {
                     );
                 }
             }
-            if let Some((b, _)) = rule.bias {
+            if let Some((b, _)) = rule.settings.bias {
                 for u in uses {
                     // Steps that grow geometrically have a size that is linear in the length.
                     let grown = |s: f64| 1.0 + (b - 1.0) * (s / length).clamp(0.0, 1.0);
@@ -393,7 +394,7 @@ impl Sizing {
         (index, rule): (usize, &Rule),
         division: &mut [Option<Ruled<Division>>],
     ) -> Result<()> {
-        let Some((count, origin)) = rule.count else {
+        let Some((count, origin)) = rule.settings.count else {
             return Ok(());
         };
         let faces: Vec<_> = layout.faces.iter().filter(|f| rule.target.faces(f.patch, f.surface).is_some()).collect();
@@ -496,7 +497,7 @@ pub(crate) const FREE_ONLY: [&str; 2] = ["smooth", "growth"];
 
 /// Where one of them is written.
 pub(crate) fn free_only_origin(plan: &Plan, key: &str) -> Option<Origin> {
-    if key == "smooth" { plan.smooth.map(|n| n.1) } else { plan.growth.map(|g| g.1) }
+    if key == "smooth" { plan.settings.smooth.map(|n| n.1) } else { plan.settings.growth.map(|g| g.1) }
 }
 
 /// Settings of which one rule may override another.

@@ -27,7 +27,7 @@ pub fn refuse_steps(input: &Input, layout: &Layout, sizing: &Sizing) -> Result<(
 /// it is sparing.
 pub fn refuse_bends(input: &Input, layout: &Layout, spacings: &[BorderSpacing], size: &[f64]) -> Result<()> {
     let plan = input.plan;
-    let Some(limit) = plan.chord_error.or(plan.angle_error) else { return Ok(()) };
+    let Some(limit) = plan.settings.chord_error.or(plan.settings.angle_error) else { return Ok(()) };
     let near = input.tolerance.point;
     let demand = |k: usize| spacings[k].demand((layout.length(k) - near).max(0.0), size[k], u32::MAX);
     let bent = |k: &usize| spacings[*k].least() < size[*k];
@@ -46,13 +46,13 @@ pub(crate) fn too_many_steps(input: &Input, of: Origin) -> Fault {
 /// The expression that makes the steps of a segment as many as they are.
 pub(crate) fn of_segment(input: &Input, layout: &Layout, sizing: &Sizing, k: usize) -> Origin {
     let (plan, decision) = (input.plan, &sizing.decisions[k]);
-    let count = |rule: usize| plan.rules[rule].count.map(|c| c.1);
+    let count = |rule: usize| plan.rules[rule].settings.count.map(|c| c.1);
     let by_bends = || {
         let chord = Limits { angle: None, ..Limits::of(input) };
         let enough = |n: u32| steps(n, 1.0);
         let alone = least_steps(layout, k, &enough, &chord, decision.least.min(MESH_STEPS)).unwrap_or(1);
-        let angle = plan.angle_error.filter(|_| plan.chord_error.is_none() || alone < decision.least.min(MESH_STEPS));
-        angle.or(plan.chord_error).map(|limit| limit.1)
+        let angle = plan.settings.angle_error.filter(|_| plan.settings.chord_error.is_none() || alone < decision.least.min(MESH_STEPS));
+        angle.or(plan.settings.chord_error).map(|limit| limit.1)
     };
     let even = ((layout.length(k) - input.tolerance.point) / decision.size.0 - WHOLE_NUMBER).ceil();
     let asked = decision.count.map_or(decision.demand, |c| c.0);
@@ -85,7 +85,7 @@ pub fn of_size(input: &Input, clause: Option<usize>) -> Origin {
     let own = plan.size_origin();
     let Some(clause) = clause else { return own };
     match plan.rules.get(clause) {
-        Some(rule) => rule.size.map_or(rule.origin, |s| s.1),
+        Some(rule) => rule.settings.size.map_or(rule.origin, |s| s.1),
         None => plan.refines.get(clause - plan.rules.len()).map_or(own, |refine| refine.size.1),
     }
 }

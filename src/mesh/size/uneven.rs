@@ -3,7 +3,7 @@
 
 use crate::mesh::border::layout::{Face, FaceSide, Layout, Uneven};
 use crate::mesh::border::nodes::Nodes;
-use crate::mesh::request::plan::{Elements, Method};
+use crate::mesh::request::methods::{Elements, Method};
 use crate::mesh::size::sizing::Sizing;
 
 /// A step next to one shorter than this share of it makes angles below 7°.

@@ -46,10 +46,10 @@ impl Fit<'_> {
             Err(Failure::Trouble(trouble)) => Ok(Err(trouble)),
             Err(Failure::Floor(needed, at)) => Err(floor_keeps(self.made.input, needed, at)),
             Err(Failure::Missed(load, at)) => {
-                let (limit, says, over) = match (plan.chord_error, plan.angle_error) {
+                let (limit, says, over) = match (plan.settings.chord_error, plan.settings.angle_error) {
                     (Some(says), _) if load.chord >= load.angle => (MeshLimit::ChordError, says, load.chord),
                     (_, Some(says)) => (MeshLimit::AngleError, says, load.angle),
-                    _ => (MeshLimit::Size, plan.size.unwrap_or((self.face.size.0, plan.origin)), 1.0),
+                    _ => (MeshLimit::Size, plan.settings.size.unwrap_or((self.face.size.0, plan.origin)), 1.0),
                 };
                 Err(MeshFault::NotReached { limit, says: says.1, surface: self.surface.origin(), reached: over * says.0, at }.into())
             }

@@ -16,7 +16,7 @@ use crate::mesh::chart::parametric_surface::{SizeField, UniformSize};
 use crate::mesh::deviation::{poles, triangle};
 use crate::mesh::request::decider::{Decider, Tally, Why};
 use crate::mesh::request::limits::Limits;
-use crate::mesh::request::plan::{Elements, Method};
+use crate::mesh::request::methods::{Elements, Method};
 use crate::mesh::request::size_requests::floor_keeps;
 use crate::mesh::request::sources::{Body, STEEP, Source, Sources};
 use crate::mesh::size::border_spacing::{FILLED, SPACING};
@@ -93,7 +93,7 @@ pub(crate) fn fitting(
     } else {
         (SMOOTH, FINEST, WANTED, 1.0)
     };
-    let smooth = made.input.plan.smooth.map_or(smooth, |n| n.0 as usize);
+    let smooth = made.input.plan.settings.smooth.map_or(smooth, |n| n.0 as usize);
     let settings = OptimizeSettings { smooth, beyond: BEYOND, fine, wanted, fair, longest: LONGEST / SPACING };
     let rules = near(made, face, outline);
     let longest = Longest::new(face.size.0, outline, &rules).graded(outline, made.input.plan.slope());
@@ -116,7 +116,7 @@ pub(crate) fn fitting(
     let sources = Sources::new([rules.items(), &fit.short_edges(background.as_ref(), SPACING)].concat(), slope);
     if !bent && !tree && !sources.is_empty() {
         fit.settings.beyond = 1.0;
-        fit.settings.smooth = made.input.plan.smooth.map_or(SMOOTH_GRADED, |n| n.0 as usize);
+        fit.settings.smooth = made.input.plan.settings.smooth.map_or(SMOOTH_GRADED, |n| n.0 as usize);
     }
     let mut field = GradedSize { sources: &sources, range: (face.size.0, made.wanted.written), spacing: SPACING, background };
     fit.refuse_large(&field)?;

@@ -5,7 +5,8 @@ use crate::base::limits::{MESH_WORK, WORK_OF_AN_ELEMENT};
 use crate::base::origin::Origin;
 use crate::mesh::chart::parametric_surface::{SizeField, UniformSize};
 use crate::mesh::request::limits::Limits;
-use crate::mesh::request::plan::{GROWTH, Target};
+use crate::mesh::request::plan::Target;
+use crate::mesh::request::settings::GROWTH;
 use crate::mesh::request::sources::{Source, Sources};
 use crate::mesh::request::work::{allow, too_many};
 use crate::mesh::size::border_spacing::SPACING;
@@ -81,7 +82,7 @@ impl Fit<'_> {
         let (edges, rules) = (alone(field, &edges, None), alone(field, &rules, None));
         let (bends, size) = (alone(field, &none, field.background.clone()), UniformSize(self.face.size.0 * field.spacing));
         let [grown, by_edges, by_rules, by_bends, by_size] = self.expected([&grown, &edges, &rules, &bends, &size]);
-        if let Some(growth) = plan.growth.filter(|g| g.0 < GROWTH && grown <= plan.most_elements as f64) {
+        if let Some(growth) = plan.settings.growth.filter(|g| g.0 < GROWTH && grown <= plan.most_elements as f64) {
             return growth.1;
         }
         let own = of_size(self.made.input, self.face.size.1);
@@ -93,14 +94,18 @@ impl Fit<'_> {
         } else if by_rules == most {
             least.map_or(own, |rule| plan.refines[rule].size.1)
         } else {
-            self.of_edges().or(plan.growth.map(|g| g.1)).unwrap_or(own)
+            self.of_edges().or(plan.settings.growth.map(|g| g.1)).unwrap_or(own)
         }
     }
 
     /// The expression of the chord error, or of the largest angle.
     fn limit(&self, chord: bool) -> Origin {
         let plan = self.made.input.plan;
-        let limit = if chord { plan.chord_error.or(plan.angle_error) } else { plan.angle_error.or(plan.chord_error) };
+        let limit = if chord {
+            plan.settings.chord_error.or(plan.settings.angle_error)
+        } else {
+            plan.settings.angle_error.or(plan.settings.chord_error)
+        };
         limit.map_or(plan.origin, |limit| limit.1)
     }
 
@@ -123,8 +128,8 @@ impl Fit<'_> {
                 Target::Edge(courses) => courses.first()?.iter().map(|part| part.s.1 - part.s.0).sum(),
                 Target::Surface(_) | Target::Patches(_) | Target::Point(_) => return None,
             };
-            let by_count = rule.count.map(|(n, of)| (length / f64::from(n), of));
-            by_count.or(rule.size)
+            let by_count = rule.settings.count.map(|(n, of)| (length / f64::from(n), of));
+            by_count.or(rule.settings.size)
         });
         rules.min_by(|a, b| a.0.total_cmp(&b.0)).map(|rule| rule.1)
     }

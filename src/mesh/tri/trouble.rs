@@ -28,7 +28,7 @@ pub(crate) fn fault(made: &FaceInput, face: &Face, border: &FaceBorder, trouble:
         Trouble::Full => {
             let plan = made.input.plan;
             let bent = !made.input.model.surfaces[face.surface.index()].surface.is_flat();
-            let limit = plan.chord_error.or(plan.angle_error).filter(|_| bent).map(|limit| limit.1);
+            let limit = plan.settings.chord_error.or(plan.settings.angle_error).filter(|_| bent).map(|limit| limit.1);
             let of = limit.unwrap_or_else(|| crate::mesh::size::too_large::of_size(made.input, face.size.1));
             crate::mesh::request::work::too_many(plan, of, None)
         }

@@ -193,7 +193,7 @@ pub(crate) fn misplaced(input: &Input, (face, ready): (&Face, &FaceMesh), mesh: 
     let surface = &ready.geometry.surface;
     let near = GLUED * face.near.max(input.tolerance.point);
     // Under limits it was made ready for the bounds.
-    let is_ready = face.free && (input.plan.chord_error.is_some() || input.plan.angle_error.is_some());
+    let is_ready = face.free && (input.plan.settings.chord_error.is_some() || input.plan.settings.angle_error.is_some());
     let quick = if is_ready { surface.power_form() } else { None };
     let off = |(n, (u, v)): (u32, (f64, f64))| {
         let off = surface.point_by(quick.as_ref(), u, v).distance(mesh.nodes[n as usize]);

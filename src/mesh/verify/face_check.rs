@@ -19,7 +19,7 @@ use crate::mesh::data::face_geometry::{FaceGeometry, FaceNodes};
 use crate::mesh::data::face_mesh::{FaceMesh, element_ranges};
 use crate::mesh::data::mesh::Mesh;
 use crate::mesh::request::input::Input;
-use crate::mesh::request::plan::{Elements, Method};
+use crate::mesh::request::methods::{Elements, Method};
 use crate::mesh::verify::extent::{self, Extent};
 use crate::surface::{Domain, Surface};
 

@@ -11,8 +11,9 @@ use super::words::{Measure, unit_of};
 use crate::base::origin::Origin;
 use crate::lang::cx::Cx;
 use crate::lang::plans::{CheckResult, ExportSpec, MeshSpec, PictureSpec, Show};
-use crate::lang::units::unit_text;
+use crate::lang::units::{degrees, unit_text};
 use crate::lang::value::{Dim, MeshValue, ModuleId, Value as Thing};
+use crate::mesh::request::settings::{Given, Settings, Takes};
 use crate::session::collect;
 use crate::session::report::Table;
 
@@ -28,37 +29,29 @@ pub fn all(cx: &mut Cx, looks: &mut Looks) {
     looks.checks = cx.checks().iter().map(|result| check(cx, result)).collect();
 }
 
-/// Something said, as a word of its own.
-fn word(said: &impl std::fmt::Debug) -> Value {
-    Value::Word(format!("{said:?}").to_lowercase())
+/// A line with all that is written in a block.
+fn written(line: Growing, settings: &impl Settings, unit: &str) -> Growing {
+    settings.written().fold(line, |line, (declared, given, _)| {
+        let value = match (given, declared.takes) {
+            (Given::Number(x), Takes::Size) => Value::Real(x, unit_of(Measure::Length(1), unit)),
+            (Given::Number(x), Takes::Angle) => Value::Real(degrees(x), "deg".to_owned()),
+            (Given::Number(x), Takes::Count) => Value::Count(x as u64),
+            (Given::Number(x), _) => Value::Real(x, String::new()),
+            (Given::Flag(said), _) => Value::Word(yes(said).to_owned()),
+            (Given::Word(word), _) => Value::Word(word.to_owned()),
+        };
+        line.put(declared.word, value)
+    })
 }
 
 /// The settings of a mesh, then its clauses in order of writing.
 fn settings(cx: &mut Cx, spec: &MeshSpec) -> Vec<super::line::Line> {
     let unit = cx.unit().name;
     let length = |x: f64| Value::Real(x, unit_of(Measure::Length(1), unit));
-    let ratio = |x: f64| Value::Real(x, String::new());
-    let count = |n: u32| Value::Count(u64::from(n));
-    let head = line("settings", &spec.name)
-        .maybe("size", spec.size.map(|s| length(s.0)))
-        .maybe("chord_error", spec.chord_error.map(|s| length(s.0)))
-        .maybe("angle_error", spec.angle_error.map(|s| Value::Real(crate::lang::units::degrees(s.0), "deg".to_owned())))
-        .maybe("min_size", spec.min_size.map(|s| length(s.0)))
-        .maybe("growth", spec.growth.map(|s| ratio(s.0)))
-        .maybe("smooth", spec.smooth.map(|s| count(s.0)))
-        .maybe("elements", spec.elements.map(|s| word(&s.0)))
-        .maybe("order", spec.order.map(|s| count(u32::from(s.0))))
-        .maybe("method", spec.method.map(|s| word(&s.0)))
-        .maybe("conforming", spec.conforming.map(|s| Value::Word(yes(s.0).to_owned())));
-    let mut made = vec![head];
+    let mut made = vec![written(line("settings", &spec.name), &spec.settings, unit)];
     for (k, rule) in spec.rules.iter().enumerate() {
         let held = Held::of(cx, rule.things.iter().map(|t| &t.0));
-        let rule = line("settings", &format!("{} on {}", spec.name, k + 1))
-            .maybe("count", rule.count.map(|s| count(s.0)))
-            .maybe("size", rule.size.map(|s| length(s.0)))
-            .maybe("bias", rule.bias.map(|s| ratio(s.0)))
-            .maybe("elements", rule.elements.map(|s| word(&s.0)))
-            .maybe("method", rule.method.map(|s| word(&s.0)));
+        let rule = written(line("settings", &format!("{} on {}", spec.name, k + 1)), &rule.settings, unit);
         made.push(rule.all(held.pairs(unit)));
     }
     for (k, refine) in spec.refines.iter().enumerate() {
