@@ -20,7 +20,7 @@ use crate::surface::shapes::nurbs::NurbsSurface;
 
 /// The surface through `rows[j][i]`, or within `within` model units of each point; rows run along u, one per v. Warnings too (W651).
 ///
-/// Through all points its cross tangents at the border are those of parabolas. Fails as [`super::grid`] does.
+/// Through all points its cross tangents at the border are those of parabolas. Fails as [`grid`](crate::surface::points::interpolate::grid) does.
 pub fn fit(rows: &[Vec<DVec3>], within: Option<f64>, origin: Origin, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
     let (spans, _) = mean_spans(rows, origin, tolerance)?;
     let (whole, notes) = fitted(rows, &parabolic(rows, &spans), origin, tolerance)?;
