@@ -4,9 +4,9 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use lofting::base::job::Job;
 use lofting::io::Memory;
-use lofting::lang::cx::Cx;
-use lofting::lang::eval::on_big_stack;
-use lofting::lang::run::Entry;
+use lofting::lang::eval::context::Cx;
+use lofting::lang::eval::machine::on_big_stack;
+use lofting::lang::run::phases::Entry;
 use lofting::session::stages::Stages;
 
 /// Parses and evaluates a script that has no mistakes.

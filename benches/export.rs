@@ -11,7 +11,9 @@ use std::path::Path;
 
 use criterion::{Criterion, Throughput};
 use glam::DVec3;
-use lofting::io::deck::{Deck, Encoding, Format, Options, format_for};
+use lofting::io::formats::choice::format_for;
+use lofting::io::mesh_files::deck::{Deck, Encoding, Options};
+use lofting::io::mesh_files::format::Format;
 use lofting::mesh::{FaceRange, Group, Mesh};
 
 const CELLS: (u32, u32) = (1000, 500);

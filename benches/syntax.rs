@@ -6,9 +6,9 @@
 use std::fmt::Write as _;
 
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
-use lofting::lang::diag::FileId;
-use lofting::lang::names::Names;
+use lofting::lang::diag::diagnostic::FileId;
 use lofting::lang::syntax::parse;
+use lofting::lang::words::names::Names;
 
 /// The script of the peer.
 fn points_and_lines(n: usize) -> String {

@@ -18,8 +18,8 @@ use lofting::surface::blended::coons::{Grid, Method, Settings, build};
 use lofting::surface::blended::gordon::{CurveNet, Named as NamedNet, gordon};
 use lofting::surface::core::plane;
 use lofting::surface::points::control_net::{Net, bezier, nurbs};
-use lofting::surface::swept::revolve::Axis;
-use lofting::surface::swept::{extrude, revolve};
+use lofting::surface::swept::extrude;
+use lofting::surface::swept::revolve::{self, Axis};
 use lofting::surface::{Domain, Map, OneSided, Rail, Reparam, Surface, SurfaceKind, Way, bbox, carried, closest, divide, ruled, trim};
 use serde_json::Value;
 

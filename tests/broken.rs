@@ -11,8 +11,8 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, OnceLock};
 
 use lofting::base::fault::Severity;
-use lofting::lang::diag::{Diagnostic, Sources};
-use lofting::lang::diag_render::{render, render_all};
+use lofting::lang::diag::diagnostic::{Diagnostic, Sources};
+use lofting::lang::diag::render::{render, render_all};
 use lofting::session::disk::{Disk, Outputs};
 use lofting::session::guard::guarded;
 
@@ -154,7 +154,7 @@ const WITHOUT_SCRIPT: &[&str] = &[
 fn pages_of_codes_are_true() {
     let accept = std::env::var_os("LOFT_ACCEPT").is_some();
     let mut wrong = Vec::new();
-    for info in lofting::lang::codes::CODES.iter().filter(|c| c.since.is_some() && !WITHOUT_SCRIPT.contains(&c.code)) {
+    for info in lofting::lang::diag::codes::CODES.iter().filter(|c| c.since.is_some() && !WITHOUT_SCRIPT.contains(&c.code)) {
         let path = PathBuf::from(format!("docs/codes/{}.md", info.code));
         let page = fs::read_to_string(&path).expect("a page can be read");
         if let Err(said) = check_page(info.code, &path, &page, accept) {
@@ -208,7 +208,7 @@ const FIXED: &[&str] = &[
 #[test]
 fn fixes_of_pages_remove_their_reports() {
     let (mut fixed, mut wrong) = (Vec::new(), Vec::new());
-    for info in lofting::lang::codes::CODES.iter().filter(|c| c.since.is_some() && !WITHOUT_SCRIPT.contains(&c.code)) {
+    for info in lofting::lang::diag::codes::CODES.iter().filter(|c| c.since.is_some() && !WITHOUT_SCRIPT.contains(&c.code)) {
         let page = fs::read_to_string(format!("docs/codes/{}.md", info.code)).expect("a page can be read");
         let model = folder_of_page(info.code, &page).with_file_name("fixed.loft");
         let (offered, said) = fixed_one_by_one(&model, fences(&page, "loft")[0], true);
@@ -274,7 +274,7 @@ fn is_typed(code: &str, script: &str) -> bool {
 fn help_that_shows_code_is_a_fix() {
     let mut wrong = Vec::new();
     let mut texts: Vec<(PathBuf, String)> = Vec::new();
-    for info in lofting::lang::codes::CODES.iter().filter(|c| c.since.is_some() && !WITHOUT_SCRIPT.contains(&c.code)) {
+    for info in lofting::lang::diag::codes::CODES.iter().filter(|c| c.since.is_some() && !WITHOUT_SCRIPT.contains(&c.code)) {
         let page = fs::read_to_string(format!("docs/codes/{}.md", info.code)).expect("a page can be read");
         texts.push((folder_of_page(info.code, &page).with_file_name("help.loft"), fences(&page, "loft")[0].to_owned()));
     }
@@ -344,7 +344,7 @@ fn every_code_is_in_the_table() {
             if path.is_dir() { sources(&path, found) } else { found.push(path) }
         }
     }
-    let known = |code: &str| lofting::lang::codes::CODES.iter().any(|c| c.code == code);
+    let known = |code: &str| lofting::lang::diag::codes::CODES.iter().any(|c| c.code == code);
     let mut files = Vec::new();
     sources(Path::new("src"), &mut files);
     files.sort();
@@ -364,7 +364,7 @@ fn every_code_is_in_the_table() {
         let code = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
         assert!(known(&code), "{} is a page without a code", path.display());
     }
-    for info in lofting::lang::codes::CODES {
+    for info in lofting::lang::diag::codes::CODES {
         // E902 is what `loft test` says of a golden, in other words.
         let times = named.iter().filter(|n| *n == info.code).count() + usize::from(info.code == "E902");
         assert!(times > usize::from(info.since.is_some()), "{} is in the table and never reported", info.code);

@@ -684,7 +684,7 @@ fn the_reference_manual_is_current() {
 
 #[test]
 fn the_examples_of_all_functions_run() {
-    use lofting::lang::std::builtins;
+    use lofting::lang::eval::std::builtins;
     let folder = Folder::new("examples");
     let mut wrong = Vec::new();
     for builtin in builtins() {

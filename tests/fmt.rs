@@ -5,10 +5,10 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use lofting::lang::diag::FileId;
+use lofting::lang::diag::diagnostic::FileId;
 use lofting::lang::fmt::format;
-use lofting::lang::names::Names;
 use lofting::lang::syntax::parse;
+use lofting::lang::words::names::Names;
 use proptest::prelude::*;
 
 fn root() -> &'static Path {

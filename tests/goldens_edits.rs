@@ -9,9 +9,9 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use lofting::base::job::Job;
-use lofting::lang::cx::Cx;
+use lofting::lang::eval::context::Cx;
 use lofting::lang::syntax::keywords::openers;
-use lofting::lang::value::ModuleId;
+use lofting::lang::values::value::ModuleId;
 use lofting::session::disk::{Disk, Outputs};
 use lofting::session::golden::{Settings, discover, run_one_again};
 use lofting::session::guard::guarded;

@@ -4,9 +4,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use lofting::lang::codes::CODES;
-use lofting::lang::settings::{BLOCKS, EXPORT, IMPORT};
-use lofting::lang::std::builtins;
+use lofting::lang::diag::codes::CODES;
+use lofting::lang::eval::std::builtins;
+use lofting::lang::values::settings::{BLOCKS, EXPORT, IMPORT};
 
 struct Folder(PathBuf);
 

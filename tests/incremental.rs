@@ -391,7 +391,8 @@ fn told(text: &str, kept: Option<&mut Kept>) -> Vec<(String, String, Option<Stri
         Some(kept) => run_again(&task, &disk, &job, Again { kept, light: false, look: &mut |_| {} }),
         None => run(&task, &disk, &job),
     };
-    let line = |d: &lofting::lang::diag::Diagnostic| (d.message.clone(), d.labels[0].text.clone(), d.help.clone(), d.fixes.len());
+    let line =
+        |d: &lofting::lang::diag::diagnostic::Diagnostic| (d.message.clone(), d.labels[0].text.clone(), d.help.clone(), d.fixes.len());
     outcome.diagnostics.iter().map(line).collect()
 }
 

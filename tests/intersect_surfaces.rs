@@ -2,9 +2,6 @@
 //!
 //! `PROPTEST_CASES` makes the runs longer.
 
-use lofting::surface::core::plane;
-use lofting::surface::intersect::with_surfaces;
-use lofting::surface::points::control_net;
 use std::slice::from_ref;
 
 use glam::DVec3;
@@ -13,8 +10,9 @@ use lofting::base::tolerance::Tolerance;
 use lofting::geometry::build;
 use lofting::geometry::curve::Shape;
 use lofting::network::Chain;
-use lofting::surface::intersect::with_curve;
-use lofting::surface::points::control_net::Net;
+use lofting::surface::core::plane;
+use lofting::surface::intersect::{with_curve, with_surfaces};
+use lofting::surface::points::control_net::{self, Net};
 use lofting::surface::swept::revolve::{Axis, revolve};
 use lofting::surface::{Nearest, Surface, divide, extrude};
 use proptest::prelude::*;

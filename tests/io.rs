@@ -4,12 +4,16 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
-use lofting::base::math;
 use lofting::base::origin::Origin;
-use lofting::base::par;
 use lofting::base::triangulate::newell;
-use lofting::io::deck::{Deck, Encoding, FORMATS, Format, Loss, Options, Renamed, format_for};
-use lofting::io::{json, obj_read, stl_read, table};
+use lofting::base::{math, par};
+use lofting::io::files::loss::{Loss, Renamed};
+use lofting::io::formats::choice::format_for;
+use lofting::io::formats::list::FORMATS;
+use lofting::io::mesh_files::deck::{Deck, Encoding, Options};
+use lofting::io::mesh_files::format::Format;
+use lofting::io::mesh_files::{obj_read, stl_read};
+use lofting::io::tables::{json, table, table_read, table_write};
 use lofting::mesh::{FaceRange, Group, Mesh};
 use proptest::prelude::*;
 
@@ -416,7 +420,7 @@ fn binary_junk_in_a_table_is_refused_at_once() {
         .collect();
     let never = |_: &str| false;
     for layout in [table::Layout::Separated, table::Layout::Blanks] {
-        let e = table::read(&junk, &table::Reading { layout, header: None, is_unit: &never }).unwrap_err();
+        let e = table_read::read(&junk, &table::Reading { layout, header: None, is_unit: &never }).unwrap_err();
         assert!(e.line <= 2 && e.column.is_some() && e.what.contains("byte"), "{e:?}");
     }
     assert!(json::read(&junk).is_err() && obj_read::read(&junk).is_err() && stl_read::read(&junk, "x").is_err());
@@ -479,9 +483,9 @@ proptest! {
 fn survive(bytes: &[u8], header: Option<bool>) {
     let unit = |word: &str| word == "m";
     for layout in [table::Layout::Separated, table::Layout::Blanks] {
-        if let Ok(table) = table::read(bytes, &table::Reading { layout, header, is_unit: &unit }) {
+        if let Ok(table) = table_read::read(bytes, &table::Reading { layout, header, is_unit: &unit }) {
             assert_eq!(table.rows.len(), table.lines.len());
-            table::write_csv(&table, &mut std::io::sink()).unwrap();
+            table_write::write_csv(&table, &mut std::io::sink()).unwrap();
         }
     }
     let _ = json::read(bytes);

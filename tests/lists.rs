@@ -3,8 +3,8 @@
 
 use std::path::Path;
 
-use lofting::lang::std::{Builtin, Param, builtins, fields};
-use lofting::lang::types::Ty;
+use lofting::lang::eval::std::{Builtin, Param, builtins, fields};
+use lofting::lang::values::types::Ty;
 use lofting::session::disk::{Disk, Outputs};
 
 use crate::support::script;

@@ -562,7 +562,7 @@ fn said_from_nothing(text: &str) -> Vec<(String, Value)> {
         clock: &|| 0.0,
     };
     let outcome = lofting::session::guard::guarded(|| run(&task, &disk, &Job::new())).unwrap();
-    let place = |d: &lofting::lang::diag::Diagnostic| position(text, d.labels.first().map_or(0, |l| l.span.start as usize));
+    let place = |d: &lofting::lang::diag::diagnostic::Diagnostic| position(text, d.labels.first().map_or(0, |l| l.span.start as usize));
     outcome.diagnostics.iter().map(|d| (d.code.0.to_owned(), place(d))).collect()
 }
 

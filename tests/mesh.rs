@@ -17,8 +17,7 @@ use lofting::model::{Model, ShellRequest, SurfaceId};
 use lofting::network::flow_chains::{ChainFlow, of_chains};
 use lofting::network::graph::Input as NetInput;
 use lofting::network::{Chain, Network};
-use lofting::surface::blended::coons;
-use lofting::surface::blended::coons::{Grid, Method, Settings};
+use lofting::surface::blended::coons::{self, Grid, Method, Settings};
 use lofting::surface::swept::revolve::{axis_of, revolve};
 use lofting::surface::{Reparam, Surface};
 

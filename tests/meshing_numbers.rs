@@ -1,6 +1,5 @@
 //! The reference numbers of meshing (`data/reference/meshing.json`, `point_in_loop.json`): what weak methods miss is found here.
 
-use lofting::surface::core::plane;
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
@@ -15,6 +14,7 @@ use lofting::mesh::quad::net::Net;
 use lofting::mesh::quad::smooth::Smoother;
 use lofting::network::Chain;
 use lofting::session::live::{Depth, Live};
+use lofting::surface::core::plane;
 use lofting::surface::{closest, polynomial, trim};
 use serde_json::Value;
 

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::PathBuf;
 use std::process::Command;
 
-use lofting::lang::std::fields;
+use lofting::lang::eval::std::fields;
 use serde_json::Value;
 
 fn schema() -> Value {

@@ -1,6 +1,5 @@
 //! Sizes of meshes: `near`, `in`, `growth` and `min_size` on faces, links and across borders.
 
-use lofting::surface::blended::plane_face;
 use std::collections::BTreeMap;
 
 use glam::DVec3;
@@ -20,6 +19,7 @@ use lofting::model::{Model, SurfaceId};
 use lofting::network::graph::Input as NetInput;
 use lofting::network::{Chain, Network};
 use lofting::surface::Surface;
+use lofting::surface::blended::plane_face;
 
 use crate::support::script;
 

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use lofting::base::fault::Severity;
-use lofting::io::stl_read;
+use lofting::io::mesh_files::stl_read;
 use lofting::mesh::Mesh;
 use lofting::session::disk::{Disk, Outputs};
 use lofting::session::run::Outcome;

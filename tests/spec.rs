@@ -11,13 +11,14 @@ use std::path::{Path, PathBuf};
 use lofting::base::fault::Severity;
 use lofting::base::job::Job;
 use lofting::io::Memory;
-use lofting::lang::cx::Cx;
-use lofting::lang::diag::{Diagnostic, FileId, Label};
-use lofting::lang::diag_render::render_all;
-use lofting::lang::eval::on_big_stack;
-use lofting::lang::run::Entry;
-use lofting::lang::std::{self as words, Builtin};
-use lofting::lang::value::ModuleId;
+use lofting::lang::diag::diagnostic::{Diagnostic, FileId, Label};
+use lofting::lang::diag::render::render_all;
+use lofting::lang::eval::context::Cx;
+use lofting::lang::eval::machine::on_big_stack;
+use lofting::lang::eval::std as words;
+use lofting::lang::eval::std::Builtin;
+use lofting::lang::run::phases::Entry;
+use lofting::lang::values::value::ModuleId;
 use lofting::session::stages::Stages;
 
 /// What a line of a script expects.

@@ -2,9 +2,6 @@
 //!
 //! `PROPTEST_CASES` makes the runs longer.
 
-use lofting::surface::blended::plane_face;
-use lofting::surface::core::plane;
-use lofting::surface::intersect::with_surfaces;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::{DVec2, DVec3};
@@ -16,6 +13,9 @@ use lofting::geometry::build::{arc_through, circle, line, polyline, spline};
 use lofting::geometry::{Curve, Ends, Spline};
 use lofting::model::measure;
 use lofting::network::Chain;
+use lofting::surface::blended::plane_face;
+use lofting::surface::core::plane;
+use lofting::surface::intersect::with_surfaces;
 use lofting::surface::swept::revolve::Axis;
 use lofting::surface::{Surface, Way, carried, extrude, revolve, split, trim};
 use proptest::prelude::*;

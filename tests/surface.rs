@@ -12,8 +12,8 @@ use lofting::network::{Chain, ChainFlow, Flow, FlowKind, of_chains};
 use lofting::surface::blended::coons::{Grid, Method, Settings, build};
 use lofting::surface::blended::plane_face;
 use lofting::surface::points::interpolate::{Tangents, fitted};
-use lofting::surface::swept::revolve::Axis;
-use lofting::surface::swept::{extrude, revolve};
+use lofting::surface::swept::extrude;
+use lofting::surface::swept::revolve::{self, Axis};
 use lofting::surface::{Domain, Nearest, NurbsSurface, OneSided, Reparam, Side, Surface, axis_of, extrude, revolve, ruled};
 use serde_json::Value;
 

@@ -7,8 +7,8 @@ use clap::{Arg, ArgAction, ArgMatches};
 
 use super::{Command, Exit, Terminal};
 use crate::base::limits;
-use crate::lang::diag::Sources;
-use crate::lang::diag_render::render_all;
+use crate::lang::diag::diagnostic::Sources;
+use crate::lang::diag::render::render_all;
 use crate::lang::fmt::{Formatted, format};
 use crate::session::disk::{read_limited, read_stream, words};
 use crate::session::guard::guarded;

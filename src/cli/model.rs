@@ -10,7 +10,7 @@ use super::{Exit, Terminal, cases, interrupt, summary};
 use crate::base::job::Job;
 use crate::base::limits;
 use crate::io::FileError;
-use crate::lang::run::TableRow;
+use crate::lang::declare::params::TableRow;
 use crate::session::cache::Cache;
 use crate::session::disk::{Disk, Outputs, read_limited, read_stream, words};
 use crate::session::guard::{Bug, guarded};

@@ -1,67 +1,16 @@
 //! Floor 7: the language: text to tree, values, evaluation by dependency, diagnostics.
+//!
+//! A room imports only from rooms before it:
+//!
+//! [`diag`] · [`words`] · [`syntax`] · [`values`] · [`eval`] · [`incremental`] · [`declare`] · [`assist`] · [`run`] · [`fmt`]
 
 pub mod assist;
-mod bind;
-mod call;
-mod came_from;
-mod circles;
-pub mod codes;
-mod coerce;
-mod collections;
-pub mod cx;
-mod declare;
+pub mod declare;
 pub mod diag;
-pub mod diag_render;
-mod drafts;
-mod element_words;
-mod elsewhere;
 pub mod eval;
-mod expr;
-mod faults;
 pub mod fmt;
-pub mod glued;
-mod import_part;
-mod imports;
-mod joining;
-mod keys;
-mod later;
-mod load;
-mod lookalikes;
-mod many;
-mod meetings;
-pub mod members;
-pub mod memory;
-mod module;
-pub mod names;
-mod near;
-mod numbering;
-mod operators;
-pub mod origins;
-mod outputs;
-mod params;
-pub mod part;
-mod pictures;
-pub(crate) mod places;
-pub mod plans;
-mod recall;
-mod refine;
-mod report_tables;
-mod room;
+pub mod incremental;
 pub mod run;
-pub mod scene;
-pub mod scopes;
-pub mod settings;
-mod shares;
-mod show;
-mod snap_rounds;
-mod snapping;
-mod stages;
-pub mod std;
-pub mod symbols;
 pub mod syntax;
-pub mod table;
-mod typed_calls;
-pub mod types;
-pub mod units;
-pub mod unmade;
-pub mod value;
+pub mod values;
+pub mod words;

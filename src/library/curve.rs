@@ -11,7 +11,7 @@ use crate::base::math;
 use crate::base::origin::Origin;
 use crate::base::tolerance::{PARALLEL, Tolerance};
 use crate::geometry::{self, Ends, Motion, Spline, build};
-use crate::lang::units::radians;
+use crate::lang::values::units::radians;
 use crate::network::Chain;
 
 /// A curve in space. Cheap to clone.

@@ -7,10 +7,10 @@ use super::names::Names;
 use super::surface::Surface;
 use crate::base::fault::Say;
 use crate::base::tolerance::Tolerance;
-use crate::lang::cx::Cx;
-use crate::lang::scene::Scene;
-use crate::lang::units::LengthUnit;
-use crate::lang::value::{ModuleId, ShellValue};
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::scene::Scene;
+use crate::lang::values::units::LengthUnit;
+use crate::lang::values::value::{ModuleId, ShellValue};
 
 /// The geometry of a script as far as it is sound.
 pub struct Loaded {

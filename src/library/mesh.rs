@@ -8,7 +8,7 @@ use super::names::{Names, Speaker};
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::io::{Deck, Loss, Options, format_for};
-use crate::lang::units::LengthUnit;
+use crate::lang::values::units::LengthUnit;
 use crate::mesh;
 use crate::session::disk::{plain, write_whole};
 use crate::session::report::DiagnosticRow;

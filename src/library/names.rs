@@ -9,8 +9,8 @@ use glam::DVec3;
 use crate::base::fault::Say;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
-use crate::lang::places::place_texts;
-use crate::lang::units::{LengthUnit, MILLIMETRE, angle_text, number_text, told_length};
+use crate::lang::values::places::place_texts;
+use crate::lang::values::units::{LengthUnit, MILLIMETRE, angle_text, number_text, told_length};
 
 /// Those of scripts are small numbers, counted from 1.
 const FIRST: u32 = 1 << 31;

@@ -1,7 +1,7 @@
 //! What is asked of a mesh, said in Rust.
 
 use crate::base::origin::Origin;
-use crate::lang::units::radians;
+use crate::lang::values::units::radians;
 use crate::mesh::request::settings::{Located, MeshSettings, NearSettings, RuleSettings};
 use crate::mesh::{Elements, Method};
 

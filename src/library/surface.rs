@@ -10,18 +10,15 @@ use crate::base::limits::CALL_WORK;
 use crate::base::tolerance::Tolerance;
 use crate::base::work::{Budget, Exceeded};
 use crate::geometry::Motion;
-use crate::lang::units::radians;
+use crate::lang::values::units::radians;
 use crate::model::measure;
 use crate::network::{self, Chain, ChainFlow};
 use crate::session::report::DiagnosticRow;
-use crate::surface;
-use crate::surface::blended::coons;
-use crate::surface::blended::coons::{Grid, Method, Settings};
-use crate::surface::blended::skin;
-use crate::surface::blended::skin::Across;
+use crate::surface::blended::coons::{self, Grid, Method, Settings};
+use crate::surface::blended::skin::{self, Across};
 use crate::surface::blended::skin_align::Section;
 use crate::surface::blended::skin_ends::Leaving;
-use crate::surface::{Domain, Reparam};
+use crate::surface::{self, Domain, Reparam};
 
 /// A surface over parameters u and v. Cheap to clone.
 ///

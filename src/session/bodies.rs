@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use crate::base::bbox::Box3;
 use crate::base::tolerance::Tolerance;
-use crate::lang::scene::Scene;
+use crate::lang::eval::scene::Scene;
 use crate::mesh::Plan;
 use crate::model::SurfaceId;
 use crate::model::glue::{join, root};

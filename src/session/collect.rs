@@ -5,11 +5,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::base::bbox::Box3;
 use crate::base::fault::{Fault, Say, Severity};
 use crate::base::tolerance::{GAP_ROOM, Tolerance};
-use crate::lang::cx::{Cx, Halt, Parts};
-use crate::lang::diag::{Diagnostic, Sources};
-use crate::lang::plans::{CheckResult, ReportTable};
-use crate::lang::unmade::{Unmade, Why};
-use crate::lang::value::{ModuleId, Quantity, ShellValue, Value};
+use crate::lang::diag::diagnostic::{Diagnostic, Sources};
+use crate::lang::eval::context::{Cx, Halt, Parts};
+use crate::lang::run::unmade::{Unmade, Why};
+use crate::lang::values::plans::{CheckResult, ReportTable};
+use crate::lang::values::value::{ModuleId, Quantity, ShellValue, Value};
 use crate::mesh::Mesh;
 use crate::mesh::cache::reuse::Reuse;
 use crate::model::topology::Named;
@@ -163,7 +163,7 @@ pub fn shell(cx: &mut Cx, shell: &ShellValue, (tolerance, full): (&Tolerance, bo
         area: Some(measure::areas(&shell.surfaces).iter().sum()),
         volume: built.closed.then(|| glued.solid().volume.abs()),
         gap: contacts.iter().map(|c| c.gap.max).reduce(f64::max),
-        angle: contacts.iter().filter_map(|c| c.angle).map(|a| crate::lang::units::degrees(a.max)).reduce(f64::max),
+        angle: contacts.iter().filter_map(|c| c.angle).map(|a| crate::lang::values::units::degrees(a.max)).reduce(f64::max),
         corners: if full { corners(measure::bounds(&shell.surfaces)) } else { None },
     })
 }
@@ -175,7 +175,7 @@ pub const QUICK_ELEMENTS: usize = 200_000;
 pub fn mesh(name: &str, mesh: &Mesh, tolerance: &Tolerance, (full, reuse): (bool, Option<&Reuse>)) -> MeshRow {
     let full = full || mesh.triangles.len() + mesh.quads.len() <= QUICK_ELEMENTS;
     let quality = mesh.quality();
-    let degrees = crate::lang::units::degrees;
+    let degrees = crate::lang::values::units::degrees;
     let group = |g: &crate::mesh::Group| GroupRow {
         name: g.name.clone(),
         nodes: g.nodes.len(),
@@ -215,7 +215,8 @@ pub fn check(result: &CheckResult, sources: &Sources) -> CheckRow {
 
 /// A report table.
 pub fn table(table: &ReportTable) -> Table {
-    let column = |c: &crate::lang::plans::Column| Column { name: c.name.clone(), unit: (!c.unit.is_empty()).then(|| c.unit.clone()) };
+    let column =
+        |c: &crate::lang::values::plans::Column| Column { name: c.name.clone(), unit: (!c.unit.is_empty()).then(|| c.unit.clone()) };
     Table {
         title: table.title.clone(),
         columns: table.columns.iter().map(column).collect(),
@@ -258,7 +259,7 @@ pub fn diagnostic(found: &Diagnostic, sources: &Sources) -> Vec<DiagnosticRow> {
 }
 
 fn diagnostic_row(found: &Diagnostic, count: usize, sources: &Sources) -> DiagnosticRow {
-    let label = |label: &crate::lang::diag::Label| {
+    let label = |label: &crate::lang::diag::diagnostic::Label| {
         let place = sources.place(label.file, label.span.start);
         LabelRow {
             file: sources.get(label.file).map(|f| f.name.clone()).unwrap_or_default(),

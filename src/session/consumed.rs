@@ -2,11 +2,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::lang::cx::{Cx, Sound};
-use crate::lang::scene::side_of;
-use crate::lang::symbols::Symbol;
+use crate::lang::eval::context::{Cx, Sound};
+use crate::lang::eval::scene::side_of;
+use crate::lang::run::symbols::Symbol;
 use crate::lang::syntax::ast::Keyword;
-use crate::lang::value::Value;
+use crate::lang::values::value::Value;
 use crate::surface::{Domain, Surface};
 
 /// Names of the declared surfaces from which another surface of the script was trimmed, split or imprinted, but those that a shell is

@@ -4,7 +4,7 @@
 use crate::base::fault::Fault;
 use crate::base::job::Job;
 use crate::base::tolerance::Tolerance;
-use crate::lang::scene::Scene;
+use crate::lang::eval::scene::Scene;
 use crate::mesh::Plan;
 use crate::mesh::request::plan::Target;
 use crate::model::carry::Stage;

@@ -9,15 +9,17 @@ use crate::base::fault::{Edit, FileFault, Say};
 use crate::base::limits::FILE_WORK;
 use crate::base::origin::Origin;
 use crate::base::work::{Budget, Exceeded};
-use crate::io::curves::{Drawing, Polyline, curve_format_for};
-use crate::io::endings::{IGES, STEP, Sort, misfit};
-use crate::io::json::{self, Json};
-use crate::io::table::{self, Cell, Table};
+use crate::io::curve_files::polylines::{Drawing, Polyline};
+use crate::io::formats::choice::curve_format_for;
+use crate::io::formats::endings::{IGES, STEP, Sort, misfit};
+use crate::io::tables::json::{self, Json};
+use crate::io::tables::table::{Cell, Table};
+use crate::io::tables::table_write;
 use crate::io::{Deck, Encoding, FileError, Files, Loss, Options, extension, format_for};
-use crate::lang::cx::{Cx, Halt};
-use crate::lang::plans::ExportSpec;
-use crate::lang::scene::side_of;
-use crate::lang::value::{Dim, MeshValue, ModuleId, Record, Value};
+use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::eval::scene::side_of;
+use crate::lang::values::plans::ExportSpec;
+use crate::lang::values::value::{Dim, MeshValue, ModuleId, Record, Value};
 use crate::network::Chain;
 use crate::surface::Surface;
 
@@ -168,7 +170,7 @@ pub(super) fn put(
 pub(super) fn unit_of(cx: &Cx, spec: &ExportSpec) -> (&'static str, Option<f64>) {
     let model = cx.unit();
     match spec.units {
-        Some((unit, _)) if unit != model => (unit.name, Some(crate::lang::units::convert(1.0, unit, model, 1))),
+        Some((unit, _)) if unit != model => (unit.name, Some(crate::lang::values::units::convert(1.0, unit, model, 1))),
         _ => (model.name, None),
     }
 }
@@ -295,7 +297,7 @@ fn records(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<Written,
         }
         "csv" => {
             let table = csv_table(cx, &rows);
-            put(spec, files, &mut |out| table::write_csv(&table, out).map(|()| Vec::new()))
+            put(spec, files, &mut |out| table_write::write_csv(&table, out).map(|()| Vec::new()))
         }
         _ => Err(misfit(spec.path_origin, &spec.path, Sort::Records).into()),
     }
@@ -331,7 +333,7 @@ fn csv_table(cx: &Cx, rows: &[std::sync::Arc<Record>]) -> Table {
     let cell = |value: Option<&Value>| match value {
         None | Some(Value::None) => Cell::None,
         Some(Value::Number(q)) if q.dim.is_none() => Cell::Number(q.value),
-        Some(Value::Number(q)) => Cell::Quantity(q.value, crate::lang::units::unit_text(q.dim, cx.unit())),
+        Some(Value::Number(q)) => Cell::Quantity(q.value, crate::lang::values::units::unit_text(q.dim, cx.unit())),
         Some(Value::Text(t) | Value::Word(t)) => Cell::Text(t.to_string()),
         Some(other) => Cell::Text(cx.show(other)),
     };

@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use super::export::Colors;
 use crate::base::tolerance::Tolerance;
 use crate::io::cad::bodies::Faces;
-use crate::lang::cx::{Cx, Halt};
-use crate::lang::scene::{Scene, side_of};
-use crate::lang::value::{ModuleId, ShellValue, Value};
+use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::eval::scene::{Scene, side_of};
+use crate::lang::values::value::{ModuleId, ShellValue, Value};
 use crate::model::Shell;
 use crate::surface::Surface;
 

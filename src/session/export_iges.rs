@@ -6,10 +6,10 @@ use crate::base::fault::{FileFault, Say};
 use crate::base::origin::Origin;
 use crate::io::Files;
 use crate::io::iges::write::{self, Scale, Shown, Thing};
-use crate::lang::cx::{Cx, Halt};
-use crate::lang::plans::ExportSpec;
-use crate::lang::scene::Scene;
-use crate::lang::value::{Dim, ModuleId, Value};
+use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::eval::scene::Scene;
+use crate::lang::values::plans::ExportSpec;
+use crate::lang::values::value::{Dim, ModuleId, Value};
 use crate::surface::Surface;
 
 /// Points, curves, surfaces and shells as an IGES file.

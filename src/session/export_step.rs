@@ -10,11 +10,11 @@ use crate::io::cad::assembly::Node;
 use crate::io::cad::bodies::Faces;
 use crate::io::step::write::{self, Measured, Scale, Schema, Setup, Shown, Thing};
 use crate::io::{Files, Loss};
-use crate::lang::cx::{Cx, Halt};
-use crate::lang::part::PartFile;
-use crate::lang::plans::ExportSpec;
-use crate::lang::scene::Scene;
-use crate::lang::value::{Dim, ModuleId, Value};
+use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::eval::scene::Scene;
+use crate::lang::values::part::PartFile;
+use crate::lang::values::plans::ExportSpec;
+use crate::lang::values::value::{Dim, ModuleId, Value};
 use crate::model::{SurfaceId, measure};
 use crate::surface::Surface;
 

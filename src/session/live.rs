@@ -8,7 +8,7 @@ use super::guard::{Bug, guarded};
 use super::kept::Kept;
 use super::run::{Again, Outcome, Task, Wanted, run_again};
 use crate::base::job::Job;
-use crate::lang::cx::Cx;
+use crate::lang::eval::context::Cx;
 
 /// Seconds since some moment.
 pub type Clock = Arc<dyn Fn() -> f64 + Send + Sync>;

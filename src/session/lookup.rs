@@ -2,11 +2,11 @@
 
 use super::reference::{first_sentence, settings};
 use super::similar::word_distance;
-use crate::lang::codes;
-use crate::lang::settings::{Setting, blocks_of};
-use crate::lang::std::{Builtin, builtins, fields};
+use crate::lang::diag::codes;
+use crate::lang::eval::std::{Builtin, builtins, fields};
 use crate::lang::syntax::keywords::{KeywordDoc, WORDS};
-use crate::lang::types::TYPE_NAMES;
+use crate::lang::values::settings::{Setting, blocks_of};
+use crate::lang::values::types::TYPE_NAMES;
 
 /// Words offered for one that is not known.
 const OFFERED: usize = 3;

@@ -7,10 +7,10 @@ use glam::DVec3;
 use super::pictures::{Stage, Things};
 use crate::base::fault::Say;
 use crate::draw::{Label, Scene as Drawing};
-use crate::lang::cx::Cx;
-use crate::lang::plans::PictureSpec;
+use crate::lang::eval::context::Cx;
 use crate::lang::syntax::ast::Keyword;
-use crate::lang::value::{ModuleId, Value};
+use crate::lang::values::plans::PictureSpec;
+use crate::lang::values::value::{ModuleId, Value};
 use crate::network::chain::same_curve;
 use crate::network::{Chain, LinkId, Network};
 
@@ -133,7 +133,7 @@ pub(super) fn add(spec: &PictureSpec, things: &Things, stage: &Stage, drawing: &
 
 /// The declared point at a place.
 fn declared(stage: &Stage, at: DVec3) -> Option<String> {
-    let near = |p: &&crate::lang::cx::Declared<DVec3>| stage.tolerance.same_point(p.value, at);
+    let near = |p: &&crate::lang::eval::context::Declared<DVec3>| stage.tolerance.same_point(p.value, at);
     stage.sound.parts.points.iter().find(near).map(|p| p.name.to_string())
 }
 

@@ -2,9 +2,9 @@
 
 use super::run::Wanted;
 use crate::base::fault::Severity;
-use crate::lang::diag::{Diagnostic, FileId};
-use crate::lang::names::Names;
+use crate::lang::diag::diagnostic::{Diagnostic, FileId};
 use crate::lang::syntax::parse;
+use crate::lang::words::names::Names;
 
 /// What the hidden names begin with that paths have while the model is evaluated.
 pub(super) const ASKED: &str = "asked_of_this_picture_";

@@ -7,7 +7,7 @@ use super::disk::same_file;
 use super::store::Store;
 use crate::base::fault::FileFault;
 use crate::base::origin::Origin;
-use crate::lang::cx::Cx;
+use crate::lang::eval::context::Cx;
 
 /// Says E812 for each file that several outputs of the script would write, and E813 for each output over the script, a
 /// module or a file that it imports; gives the files in question, as [`Store::file_of`] tells them apart: none of them is

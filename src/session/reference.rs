@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 
 use crate::base::limits;
-use crate::lang::settings::{BLOCKS, Setting};
-use crate::lang::std::{Builtin, builtins, fields};
+use crate::lang::eval::std::{Builtin, builtins, fields};
 use crate::lang::syntax::keywords::{KeywordDoc, WORDS, openers};
-use crate::lang::types::TYPE_NAMES;
-use crate::lang::units::{LENGTHS, OTHERS};
+use crate::lang::values::settings::{BLOCKS, Setting};
+use crate::lang::values::types::TYPE_NAMES;
+use crate::lang::values::units::{LENGTHS, OTHERS};
 
 /// Every word in a line each.
 pub fn overview() -> String {

@@ -3,7 +3,7 @@
 //! The order of fields is the order of keys. Lengths are in model units, angles in degrees.
 
 use crate::base::tolerance::Tolerance;
-use crate::lang::members::UNIT_COLUMN;
+use crate::lang::eval::members::UNIT_COLUMN;
 use serde::Serialize;
 
 /// Version of the report's shape.

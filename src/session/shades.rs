@@ -8,8 +8,8 @@ use crate::draw::color::{BACK, BAD_TO_GOOD, BELOW_TO_ABOVE, FRONT, LITTLE_TO_MUC
 use crate::draw::faces::Show;
 use crate::draw::meshes::{self, Measure};
 use crate::draw::{Paint, Scale, Scene as Drawing, Sheet};
-use crate::lang::cx::{Cx, Halt};
-use crate::lang::plans::PictureSpec;
+use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::values::plans::PictureSpec;
 use crate::mesh::Mesh;
 
 /// Share of places whose curvature lies inside the scale: a few sharp places do not take all colours.

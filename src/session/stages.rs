@@ -9,10 +9,10 @@ use crate::base::job::Job;
 use crate::base::limits::{REPORTS_OF_A_KIND, REPORTS_TOLD, STAGE_WORK, WORK_OF_A_CURVE, WORK_OF_A_SURFACE};
 use crate::base::tolerance::Tolerance;
 use crate::base::work::{Budget, Exceeded};
-use crate::lang::cx::{Cx, Halt, Parts, Pipeline, Snapping, Turn};
-use crate::lang::plans::MeshSpec;
-use crate::lang::scene::Scene;
-use crate::lang::value::ModuleId;
+use crate::lang::eval::context::{Cx, Halt, Parts, Pipeline, Snapping, Turn};
+use crate::lang::eval::scene::Scene;
+use crate::lang::values::plans::MeshSpec;
+use crate::lang::values::value::ModuleId;
 use crate::mesh;
 use crate::mesh::Mesh;
 use crate::mesh::cache::reuse::Shelf;
@@ -179,7 +179,10 @@ impl Pipeline for Stages<'_> {
 
     fn model(&self, cx: &mut Cx, module: ModuleId, (parts, network): (&Parts, Arc<Network>)) -> Result<Arc<Model>, Halt> {
         let tolerance = cx.tolerance()?;
-        let named = |s: &crate::lang::cx::Declared<crate::surface::Surface>| Named { name: s.name.to_string(), surface: s.value.clone() };
+        let named = |s: &crate::lang::eval::context::Declared<crate::surface::Surface>| Named {
+            name: s.name.to_string(),
+            surface: s.value.clone(),
+        };
         let mut surfaces: Vec<Named> = parts.surfaces.iter().map(named).collect();
         canonical::sort_surfaces(&mut surfaces, &tolerance);
         if let Some(kept) = self.kept()

@@ -2,10 +2,10 @@
 
 use serde_json::{Value, json};
 
-use crate::lang::settings::BLOCKS;
-use crate::lang::std::builtins;
+use crate::lang::eval::std::builtins;
 use crate::lang::syntax::keywords::WORDS;
 use crate::lang::syntax::number::{ANGLES, LENGTHS, MASSES};
+use crate::lang::values::settings::BLOCKS;
 
 /// A letter of a name.
 const LETTER: &str = r"[\p{L}\p{Nl}\p{Mn}\p{Mc}\p{Nd}\p{Pc}]";

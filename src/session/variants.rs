@@ -5,10 +5,11 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::base::text::real;
-use crate::io::table::{Cell, Layout, Reading, read};
-use crate::io::table_places::Places;
-use crate::lang::run::{SetCell, TableRow};
-use crate::lang::syntax::ast::Span;
+use crate::io::tables::cell_places::Places;
+use crate::io::tables::table::{Cell, Layout, Reading};
+use crate::io::tables::table_read::read;
+use crate::lang::declare::params::{SetCell, TableRow};
+use crate::lang::diag::span::Span;
 
 /// One row of the table.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -28,7 +29,7 @@ const NAME: &str = "name";
 ///
 /// A case is called by its column `name`, or by its number from 001. An empty cell leaves a param at its default.
 pub fn rows(file: &str, bytes: &[u8], sets: &[(String, String)]) -> Result<Vec<Row>, String> {
-    let is_unit = |word: &str| crate::lang::units::quantity(1.0, word, crate::lang::units::MILLIMETRE).is_some();
+    let is_unit = |word: &str| crate::lang::values::units::quantity(1.0, word, crate::lang::values::units::MILLIMETRE).is_some();
     let reading = Reading { layout: Layout::Separated, header: Some(true), is_unit: &is_unit };
     let column = |at: Option<u64>| at.map_or_else(String::new, |column| format!(", column {column}"));
     let table = read(bytes, &reading).map_err(|at| format!("line {}{}: {}", at.line, column(at.column), at.what))?;

@@ -1,8 +1,5 @@
 //! What is written reads back: the same curves, surfaces, names and groups.
 
-use lofting::surface::blended::plane_face;
-use lofting::surface::core::plane;
-use lofting::surface::points::control_net;
 use std::f64::consts::PI;
 
 use glam::DVec3;
@@ -13,8 +10,10 @@ use lofting::io::iges::Part;
 use lofting::io::iges::write::{Scale, Shown, Thing, sheet, write};
 use lofting::model::measure;
 use lofting::network::Chain;
-use lofting::surface;
-use lofting::surface::Surface;
+use lofting::surface::blended::plane_face;
+use lofting::surface::core::plane;
+use lofting::surface::points::control_net;
+use lofting::surface::{self, Surface};
 
 use super::{OPTIONS, area, read};
 

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
-use crate::lang::syntax::ast::Span;
+use crate::lang::diag::span::Span;
 
 /// An open file.
 #[derive(Clone)]

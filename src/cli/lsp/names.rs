@@ -7,11 +7,12 @@ use serde_json::{Value, json};
 
 use super::answers::Others;
 use super::document::{Document, uri_of};
-use crate::lang::diag::FileId;
-use crate::lang::names::Names;
-use crate::lang::scopes::{Binding, Occurrence, occurrences};
-use crate::lang::syntax::ast::{DeclarationKind, Expr, Keyword, Script, Span, TextPart};
+use crate::lang::diag::diagnostic::FileId;
+use crate::lang::diag::span::Span;
+use crate::lang::syntax::ast::{DeclarationKind, Expr, Keyword, Script, TextPart};
 use crate::lang::syntax::parse;
+use crate::lang::syntax::scopes::{Binding, Occurrence, occurrences};
+use crate::lang::words::names::Names;
 use crate::session::disk::read_limited;
 
 /// Files beside the one at hand, and in each folder above it, that are searched for uses of it.

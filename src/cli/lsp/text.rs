@@ -9,8 +9,9 @@ use super::document::Document;
 use super::model::Facts;
 use crate::cli::repl::complete::files;
 use crate::lang::assist::{Script, Sort};
+use crate::lang::diag::span::Span;
 use crate::lang::fmt::format;
-use crate::lang::syntax::ast::{Keyword, Span};
+use crate::lang::syntax::ast::Keyword;
 use crate::lang::syntax::keywords::written;
 use crate::lang::syntax::outline::{Outline, Paint, outline, painted};
 

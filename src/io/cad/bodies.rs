@@ -5,15 +5,15 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::compose::fitted;
-use super::damage::{Damage, damage};
-use super::ground::{self, Ground};
-use super::poles::Placed;
 use crate::base::origin::Origin;
 use crate::base::par;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::curve::Shape;
 use crate::geometry::{Curve, Kind};
+use crate::io::cad::curve_on_surface::fitted;
+use crate::io::cad::damage::{Damage, damage};
+use crate::io::cad::degenerate_edges::Placed;
+use crate::io::cad::elementary_surface::{self, Ground};
 use crate::model::body::BodyLoop;
 use crate::model::{Body, BodyEdge, BodyFace, Model, Shell, SurfaceId, measure};
 use crate::network::Network;
@@ -96,7 +96,7 @@ impl Faces {
 
     fn ground(&self, face: &BodyFace, tolerance: &Tolerance) -> Result<Ground, Damage> {
         let surface = &self.model.surfaces[face.surface.index()].surface;
-        let found = ground::ground(surface, &self.model.patches[face.patch.index()], tolerance)?;
+        let found = elementary_surface::ground(surface, &self.model.patches[face.patch.index()], tolerance)?;
         found.ok_or_else(|| damage("a plane without a border is not a face"))
     }
 

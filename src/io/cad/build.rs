@@ -1,14 +1,15 @@
 //! Faces as surface values.
 
-use super::damage::{Damage, damage};
-use super::face::{Border, Face, least_area, reach};
-use super::healing::{Repair, Rule};
-use super::part::{Figure, Part, Unusable};
 use crate::base::fault::{Malformed, Share};
 use crate::base::job;
 use crate::base::origin::Origin;
 use crate::base::text::decimals;
 use crate::base::tolerance::{MOST_REPAIR, Tolerance};
+use crate::io::cad::border::{Border, reach};
+use crate::io::cad::damage::{Damage, damage};
+use crate::io::cad::face::{Face, least_area};
+use crate::io::cad::healing::{Repair, Rule};
+use crate::io::cad::part::{Figure, Part, Unusable};
 use crate::model::measure;
 use crate::network::Chain;
 use crate::surface::{Doubt, Ground, Outlined, Side, Surface, outlined, trim};

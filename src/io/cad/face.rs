@@ -2,23 +2,13 @@
 
 use glam::DVec3;
 
-use super::base::Base;
-use super::healing::{Off, Rule};
-use super::natural::{Allowance, is_natural, matched};
-use crate::base::bbox::Box3;
 use crate::base::tolerance::{NEAR_MISS, ONE_BORDER, Tolerance};
-use crate::geometry::{Curve, Motion, closest};
+use crate::geometry::{Motion, closest};
+use crate::io::cad::base_surface::Base;
+use crate::io::cad::border::Border;
+use crate::io::cad::healing::{Off, Rule};
+use crate::io::cad::natural_bounds::{Allowance, is_natural, matched};
 use crate::surface::{Nearest, Side, Surface};
-
-/// One curve of a loop.
-#[derive(Clone, Debug)]
-pub struct Border {
-    /// The curve in space, in the loop's direction; it counts.
-    pub space: Curve,
-    /// The same in the (u, v) of the base surface, z = 0, in any direction: where the file has it, it agrees with the curve in
-    /// space, and the file's parameters are the surface's in proportion.
-    pub uv: Option<Curve>,
-}
 
 /// A part of a surface inside an outer loop and outside inner ones.
 #[derive(Clone, Debug)]
@@ -110,17 +100,17 @@ impl Face {
 }
 
 impl Face {
-    /// Carried by a motion; one that mirrors keeps the side it looks to.
+    /// Moved by a motion; one that mirrors keeps the side it looks to.
     pub fn moved(&self, motion: &Motion) -> Self {
-        let carried = |border: &Vec<Border>| {
+        let transformed = |border: &Vec<Border>| {
             let one = |b: &Border| Border { space: b.space.moved(motion), uv: b.uv.clone() };
             border.iter().map(one).collect::<Vec<Border>>()
         };
         Self {
             base: self.base.moved(motion),
             also: self.also.iter().map(|surface| surface.moved(motion)).collect(),
-            outer: self.outer.as_ref().map(carried),
-            holes: self.holes.iter().map(carried).collect(),
+            outer: self.outer.as_ref().map(transformed),
+            holes: self.holes.iter().map(transformed).collect(),
             flipped: self.flipped != motion.mirrors(),
             against: self.against != motion.mirrors(),
             inside: self.inside.map(|p| motion.point(p)),
@@ -193,19 +183,4 @@ pub fn least_area(loops: &[&Vec<Border>]) -> f64 {
     };
     let areas: Vec<f64> = loops.iter().map(|border| spanned(border)).collect();
     (areas.first().copied().unwrap_or_default() - areas.iter().skip(1).sum::<f64>()).max(0.0)
-}
-
-/// The box around all curves of loops.
-pub fn reach<'a>(loops: impl IntoIterator<Item = &'a Vec<Border>>) -> Box3 {
-    loops.into_iter().flatten().map(|b| b.space.bbox()).fold(Box3::EMPTY, Box3::union)
-}
-
-/// The curves that a curve is made of.
-pub fn pieces(curve: &Curve) -> Vec<Curve> {
-    curve.composite().map_or_else(|| vec![curve.clone()], |c| c.pieces.clone())
-}
-
-/// A loop run the other way.
-pub fn backwards(borders: Vec<Border>) -> Vec<Border> {
-    borders.into_iter().rev().map(|b| Border { space: b.space.reversed(), uv: b.uv }).collect()
 }

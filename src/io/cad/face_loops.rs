@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
-use super::face::{self, Border};
 use crate::base::bbox::Box3;
 use crate::base::math;
+use crate::io::cad::border::{Border, reach};
 use crate::surface::swept::revolve::Axis;
 
 /// Places along each curve of a loop.
@@ -26,7 +26,7 @@ impl<'l> FaceLoops<'l> {
 
     /// The loops of a face, and the vertices that bound it by themselves.
     pub fn of(loops: &'l [Vec<Border>], vertices: &'l [DVec3]) -> Self {
-        Self { reach: face::reach(loops), loops, vertices }
+        Self { reach: reach(loops), loops, vertices }
     }
 
     /// The same for a surface at a distance from the one on which the loops lie.

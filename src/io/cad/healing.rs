@@ -2,8 +2,6 @@
 
 use glam::DVec3;
 
-use super::face::Face;
-use super::part::{Item, Part};
 use crate::base::text;
 
 /// By which rule something was repaired.
@@ -36,7 +34,7 @@ impl Rule {
 pub struct Repair {
     /// By which rule.
     pub rule: Rule,
-    /// Of [`Part::surfaces`].
+    /// Of [`Part::surfaces`](crate::io::cad::part::Part::surfaces).
     pub face: usize,
     /// Its name and number: `entity 144 at D87`.
     pub entity: String,
@@ -74,17 +72,5 @@ impl Off {
     /// The worse of the two.
     pub fn or(self, distance: f64, place: DVec3, rule: Rule) -> Self {
         if distance > self.distance { Self { distance, place, rule } } else { self }
-    }
-}
-
-impl Part {
-    /// Lists the faces that are off by more than the slack of the file; gives the worst and how many others there are.
-    pub fn list_repairs(&mut self, slack: f64, name: impl Fn(&Item<Face>) -> String) -> Option<(Repair, usize)> {
-        for (face, item) in self.surfaces.iter().enumerate().filter(|(_, item)| item.value.off.distance > slack) {
-            let Off { distance, place, rule } = item.value.off;
-            self.repairs.push(Repair { rule, face, entity: name(item), line: item.line, distance, place });
-        }
-        let worst = self.repairs.iter().max_by(|a, b| a.distance.total_cmp(&b.distance));
-        worst.map(|worst| (worst.clone(), self.repairs.len() - 1))
     }
 }

@@ -3,21 +3,22 @@
 //! [`bodies::Bodies`], faces with the edges that they share.
 
 pub mod assembly;
-pub mod axis_cut;
-pub mod base;
-mod beside;
+pub mod base_surface;
 pub mod bodies;
+pub mod border;
 mod build;
-pub mod carry;
-pub mod compose;
+pub mod control_nets;
+pub mod curve_on_surface;
+pub mod curves;
 pub mod damage;
+mod degenerate_edges;
+pub mod elementary_surface;
 pub mod face;
 pub mod face_loops;
-pub mod ground;
 pub mod healing;
-pub mod interior;
-mod natural;
-pub mod nets;
+pub mod inside_point;
+mod natural_bounds;
+mod offset_surface;
 pub mod part;
-mod poles;
-mod stated;
+pub mod revolution_profile;
+mod validation;

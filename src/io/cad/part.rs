@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 
-use super::assembly::Node;
-use super::face::Face;
-use super::healing::Repair;
 use crate::base::fault::Malformed;
 use crate::base::origin::Origin;
 use crate::geometry::Curve;
+use crate::io::cad::assembly::Node;
+use crate::io::cad::face::Face;
+use crate::io::cad::healing::{Off, Repair};
 use crate::surface::Surface;
 
 /// What a reader needs to know of the model.
@@ -241,5 +241,17 @@ impl Shades {
             colors.push((Group { name, ..Group::default() }, rgb));
         }
         &mut colors[k].0
+    }
+}
+
+impl Part {
+    /// Lists the faces that are off by more than the slack of the file; gives the worst and how many others there are.
+    pub fn list_repairs(&mut self, slack: f64, name: impl Fn(&Item<Face>) -> String) -> Option<(Repair, usize)> {
+        for (face, item) in self.surfaces.iter().enumerate().filter(|(_, item)| item.value.off.distance > slack) {
+            let Off { distance, place, rule } = item.value.off;
+            self.repairs.push(Repair { rule, face, entity: name(item), line: item.line, distance, place });
+        }
+        let worst = self.repairs.iter().max_by(|a, b| a.distance.total_cmp(&b.distance));
+        worst.map(|worst| (worst.clone(), self.repairs.len() - 1))
     }
 }

@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use glam::{DMat3, DVec2, DVec3, DVec4};
 
-use super::entities::Conic;
 use crate::base::math;
 use crate::base::origin::Origin;
 use crate::base::tolerance::EPSILON;
@@ -13,6 +12,7 @@ use crate::geometry::curve::Shape;
 use crate::geometry::nurbs::weighted;
 use crate::geometry::{Curve, Kind, Nurbs};
 use crate::io::cad::damage::{Damage, damage};
+use crate::io::iges::entity_data::Conic;
 
 const TURN: f64 = std::f64::consts::TAU;
 

@@ -4,14 +4,14 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3, DVec4};
 
-use super::book::{Book, NESTED};
-use super::conics::{self, Level};
-use super::entities::{Data, Pointer, SplineData};
 use crate::geometry::composite::Composite;
 use crate::geometry::curve::Shape;
 use crate::geometry::{Curve, Kind, build};
-use crate::io::cad::carry::{carried, check_reach, check_weights, ordered, weight};
+use crate::io::cad::curves::{check_reach, check_weights, ordered, transformed, weight};
 use crate::io::cad::damage::{Damage, damage};
+use crate::io::iges::conics::{self, Level};
+use crate::io::iges::entity_data::{Data, Pointer, SplineData};
+use crate::io::iges::entity_table::{Book, NESTED};
 
 /// Whether a curve is wanted in space (model units) or in the (u, v) of a surface, and how deep it is nested.
 #[derive(Clone, Copy, Debug)]
@@ -60,7 +60,7 @@ impl Book {
             Some(m) if !place.in_uv => {
                 let made = made?;
                 self.copy(weight(&made))?;
-                carried(&made, &m, &self.tolerance)?
+                transformed(&made, &m, &self.tolerance)?
             }
             _ => made?,
         };

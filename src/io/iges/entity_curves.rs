@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
-use super::entities::{Data, SplineData};
-use super::params::Reader;
 use crate::io::cad::damage::{Damage, damage};
+use crate::io::iges::entity_data::{Data, SplineData};
+use crate::io::iges::params::Reader;
 
 /// 100.
 pub fn arc(r: &mut Reader) -> Result<Data, Damage> {

@@ -1,8 +1,8 @@
 //! Parameters of trimmed surfaces and of solids given by their borders.
 
-use super::entities::{BoundaryCurve, Data, EdgeData, LoopEdge};
-use super::params::Reader;
 use crate::io::cad::damage::Damage;
+use crate::io::iges::entity_data::{BoundaryCurve, Data, EdgeData, LoopEdge};
+use crate::io::iges::params::Reader;
 
 /// 141.
 pub fn boundary(r: &mut Reader) -> Result<Data, Damage> {

@@ -1,9 +1,9 @@
 //! Parameters of surface entities.
 
-use super::entities::{Data, NetData};
-use super::entity_curves::{check_degree, increasing, range};
-use super::params::Reader;
 use crate::io::cad::damage::{Damage, damage};
+use crate::io::iges::entity_curves::{check_degree, increasing, range};
+use crate::io::iges::entity_data::{Data, NetData};
+use crate::io::iges::params::Reader;
 
 /// 108.
 pub fn plane(r: &mut Reader) -> Result<Data, Damage> {

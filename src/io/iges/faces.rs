@@ -2,20 +2,21 @@
 
 use glam::DVec3;
 
-use super::book::Book;
-use super::curves::Place;
-use super::entities::{Data, EdgeData, LoopEdge, Pointer};
 use crate::base::job;
 use crate::base::tolerance::{NEAR_MISS, NUDGE};
 use crate::geometry::{Curve, closest};
-use crate::io::cad::axis_cut::Clear;
-use crate::io::cad::base::Base;
-use crate::io::cad::carry::carried;
-use crate::io::cad::compose::composed;
+use crate::io::cad::base_surface::Base;
+use crate::io::cad::border::{Border, backwards, pieces};
+use crate::io::cad::curve_on_surface::composed;
+use crate::io::cad::curves::transformed;
 use crate::io::cad::damage::{Damage, damage};
-use crate::io::cad::face::{Border, Face, Known, backwards, pieces};
+use crate::io::cad::face::{Face, Known};
 use crate::io::cad::face_loops::FaceLoops;
-use crate::io::cad::interior::inside;
+use crate::io::cad::inside_point::inside;
+use crate::io::cad::revolution_profile::Clear;
+use crate::io::iges::curves::Place;
+use crate::io::iges::entity_data::{Data, EdgeData, LoopEdge, Pointer};
+use crate::io::iges::entity_table::Book;
 use crate::surface::Surface;
 
 /// Curves of a loop, and all that the file has of it in (u, v), those along poles too.
@@ -211,7 +212,7 @@ impl Book {
         let mut worst = 0.0_f64;
         for border in loops.iter_mut().flatten() {
             let moved = match (&map, &border.uv) {
-                (Some(m), Some(uv)) => carried(uv, m, &self.tolerance).ok(),
+                (Some(m), Some(uv)) => transformed(uv, m, &self.tolerance).ok(),
                 _ => None,
             };
             border.uv = moved.filter(|uv| {

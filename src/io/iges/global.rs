@@ -1,8 +1,8 @@
 //! The global section: separators, unit, scale.
 
-use super::lines::{CONTENT, Line, Sections};
-use super::params::{Separators, Token, real, shown, tokens};
 use crate::base::fault::Malformed;
+use crate::io::iges::lines::{CONTENT, Line, Sections};
+use crate::io::iges::params::{Separators, Token, real, shown, tokens};
 
 /// What the global section says that matters here.
 #[derive(Clone, Debug, PartialEq)]
@@ -169,8 +169,8 @@ fn unit(text: &[u8], tokens: &[Token], warn: &mut impl FnMut(String)) -> (usize,
 
 #[cfg(test)]
 mod tests {
-    use super::super::lines;
     use super::*;
+    use crate::io::iges::lines;
 
     fn global(text: &str) -> (Global, Vec<String>) {
         let mut file = String::new();

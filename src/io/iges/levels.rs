@@ -2,9 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::book::Book;
-use super::entities::{Data, Pointer};
 use crate::io::cad::part::{Group, Place};
+use crate::io::iges::entity_data::{Data, Pointer};
+use crate::io::iges::entity_table::Book;
 
 /// What is on each level.
 #[derive(Debug, Default)]

@@ -6,21 +6,20 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec3;
 
-use super::book::{Book, NESTED};
-use super::curves::Place;
-use super::entities::{Data, Pointer};
-use super::levels::Levels;
-use super::records;
 use crate::base::bbox::Box3;
 use crate::base::fault::Malformed;
-use crate::base::job;
-use crate::base::limits;
 use crate::base::tolerance::Tolerance;
-use crate::io::cad::base::Base;
+use crate::base::{job, limits};
+use crate::io::cad::base_surface::Base;
 use crate::io::cad::damage::Damage;
 use crate::io::cad::face::Face;
 use crate::io::cad::face_loops::FaceLoops;
-use crate::io::cad::part::{Group, Item, Names, Options, Part, Place as Made, Shades, Unusable};
+use crate::io::cad::part::{Group, Item, Names, Part, Place as Made, Shades, Unusable};
+use crate::io::iges::curves::Place;
+use crate::io::iges::entity_data::{Data, Pointer};
+use crate::io::iges::entity_table::{Book, NESTED};
+use crate::io::iges::levels::Levels;
+use crate::io::iges::open::Opened;
 
 /// Kinds of entities that hold faces.
 const FACES: &[u32] = &[186, 510, 514];
@@ -42,112 +41,7 @@ const COLORS: [([f64; 3], &str); 8] = [
     ([1.0, 1.0, 1.0], "white"),
 ];
 
-/// A file read as far as its numbers: entities with pointers, no geometry yet.
-#[derive(Debug)]
-pub struct Opened {
-    book: Book,
-}
-
-/// Reads a file, or says where it stops being one.
-pub fn open(bytes: &[u8], options: &Options) -> Result<Opened, Malformed> {
-    let records = records::read(bytes)?;
-    let last = records.entries.last().map_or(1, |e| e.line);
-    let book = Book::new(records, bytes.len(), options);
-    let is_used = |data: &Data| !matches!(data, Data::Damaged | Data::Silent);
-    if !book.decoded.iter().any(|d| is_used(&d.data)) {
-        let why = book.warnings.last().map_or(String::new(), |w| format!(": {}", w.what));
-        return Err(Malformed::line(last, format!("the file holds no entity that can be read{why}")));
-    }
-    Ok(Opened { book })
-}
-
 impl Opened {
-    /// How many entities of each type the file has.
-    pub fn counts(&self) -> BTreeMap<u32, usize> {
-        let mut counts = BTreeMap::new();
-        for entry in &self.book.entries {
-            job::look();
-            *counts.entry(entry.kind).or_insert(0) += 1;
-        }
-        counts
-    }
-
-    /// A box that holds about all its points, model units: for the tolerance of the model.
-    pub fn reach(&self) -> Box3 {
-        let mut reach = Box3::EMPTY;
-        // Axes, the places of endless surfaces and the ground of faces reach beyond what is offered.
-        let mut hidden = BTreeSet::new();
-        for decoded in &self.book.decoded {
-            job::look();
-            match &decoded.data {
-                Data::Revolution { axis, .. } => hidden.extend([*axis]),
-                Data::PlaneSurface { at, .. } | Data::Round { kind: 192 | 194, at, .. } => hidden.extend([*at]),
-                Data::Trimmed { surface, outer: Some(_), .. } | Data::Face { surface, has_outer: true, .. } => hidden.extend([*surface]),
-                // Curves in (u, v), which not all files mark as such.
-                Data::CurveOnSurface { uv, .. } => hidden.extend([*uv]),
-                Data::Boundary { curves, .. } => hidden.extend(curves.iter().flat_map(|curve| &curve.uv)),
-                Data::Loop(edges) => hidden.extend(edges.iter().flat_map(|edge| &edge.uv)),
-                _ => {}
-            }
-        }
-        // What the ground is made of is placed with it; what a border is made of counts all the same.
-        let mut spaces = BTreeSet::new();
-        for decoded in &self.book.decoded {
-            match &decoded.data {
-                Data::CurveOnSurface { space, .. } => spaces.extend([*space]),
-                Data::Boundary { curves, .. } => spaces.extend(curves.iter().map(|curve| curve.space)),
-                Data::Edges(edges) => spaces.extend(edges.iter().map(|edge| edge.curve)),
-                _ => {}
-            }
-        }
-        let shown = self.with_parts(spaces);
-        let hidden: BTreeSet<Pointer> = self.with_parts(hidden).difference(&shown).copied().collect();
-        for (entry, decoded) in self.book.entries.iter().zip(&self.book.decoded) {
-            job::look();
-            if entry.status.purpose == 5 || hidden.contains(&entry.d) {
-                continue;
-            }
-            let Ok(m) = self.book.placement(entry.transform) else { continue };
-            let mut see = |p: DVec3| {
-                let p = p * self.book.scale;
-                reach = reach.with(m.map_or(p, |m| m.transform_point3(p)));
-            };
-            let flat = |p: &[f64; 2], z: f64| DVec3::new(p[0], p[1], z);
-            match &decoded.data {
-                Data::Point(p) => see(*p),
-                Data::Points { points, .. } | Data::Vertices(points) => points.iter().for_each(|p| see(*p)),
-                Data::Line { start, end, .. } => [start, end].into_iter().for_each(|p| see(*p)),
-                Data::Spline(s) => s.points.iter().for_each(|p| see(*p)),
-                Data::Net(net) => net.points.iter().for_each(|p| see(*p)),
-                Data::Arc { z, center, start, end } => {
-                    [center, start, end].into_iter().for_each(|p| see(flat(p, *z)));
-                }
-                Data::ConicArc { z, start, end, .. } => [start, end].into_iter().for_each(|p| see(flat(p, *z))),
-                Data::Polynomials { pieces, .. } => pieces.iter().for_each(|[x, y, z]| see(DVec3::new(x[0], y[0], z[0]))),
-                _ => {}
-            }
-        }
-        reach
-    }
-
-    /// Entities with all that they are made of: profiles, axes, rails, pieces.
-    fn with_parts(&self, mut all: BTreeSet<Pointer>) -> BTreeSet<Pointer> {
-        let mut open: Vec<Pointer> = all.iter().copied().collect();
-        while let Some(d) = open.pop() {
-            job::look();
-            let parts = match self.book.data(d) {
-                Ok(Data::Composite(pieces)) => pieces.clone(),
-                Ok(Data::Revolution { axis, profile, .. }) => vec![*axis, *profile],
-                Ok(Data::Ruled { rails, .. }) => rails.to_vec(),
-                Ok(Data::Tabulated { profile, .. }) => vec![*profile],
-                Ok(Data::OffsetCurve { base, .. } | Data::OffsetSurface { base, .. }) => vec![*base],
-                _ => Vec::new(),
-            };
-            open.extend(parts.into_iter().filter(|part| all.insert(*part)));
-        }
-        all
-    }
-
     /// Makes curves and surfaces of the entities.
     pub fn part(mut self, tolerance: Tolerance) -> Part {
         self.book.tolerance = tolerance;
@@ -242,8 +136,8 @@ impl Maker {
             Ok(matrix) => matrix,
             Err(Damage(why)) => return self.skipped(d, &why),
         };
-        let carry = |p: DVec3| matrix.map_or(p * self.book.scale, |m| m.transform_point3(p * self.book.scale));
-        let value: Vec<DVec3> = points.into_iter().map(carry).collect();
+        let place = |p: DVec3| matrix.map_or(p * self.book.scale, |m| m.transform_point3(p * self.book.scale));
+        let value: Vec<DVec3> = points.into_iter().map(place).collect();
         if value.iter().any(|p| p.abs().max_element() > limits::COORDINATE) {
             return self.skipped(d, "its coordinates are too large");
         }

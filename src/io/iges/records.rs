@@ -6,10 +6,10 @@
 use std::cell::Cell;
 use std::collections::BTreeMap;
 
-use super::global::{self, Global};
-use super::lines::{self, DATA, Line, number_of};
-use super::params::{Tokens, tokens};
 use crate::base::fault::Malformed;
+use crate::io::iges::global::{self, Global};
+use crate::io::iges::lines::{self, DATA, Line, number_of};
+use crate::io::iges::params::{Tokens, tokens};
 
 /// Whether a value of the status field says yes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -135,7 +135,8 @@ fn int(field: &[u8]) -> Option<i64> {
 
 fn entry(first: &Line, second: &Line, d: u32) -> Result<Entry, String> {
     let (a, b) = (fields(first), fields(second));
-    let wanted = |field: &[u8], what: &str| int(field).ok_or_else(|| format!("`{}` is not a valid {what}", super::params::shown(field)));
+    let wanted =
+        |field: &[u8], what: &str| int(field).ok_or_else(|| format!("`{}` is not a valid {what}", crate::io::iges::params::shown(field)));
     let kind = wanted(a[0], "entity type")?;
     let again = int(b[0]).unwrap_or(0);
     if kind <= 0 || (again != kind && again != 0) {
@@ -152,7 +153,7 @@ fn entry(first: &Line, second: &Line, d: u32) -> Result<Entry, String> {
         transform: optional(a[6]).unsigned_abs() as u32,
         color: optional(b[2]),
         status: status(a[8]),
-        label: super::params::shown(b[7]),
+        label: crate::io::iges::params::shown(b[7]),
         subscript: number_of(b[8]),
         first: start.max(0) as usize,
         lines: optional(b[3]).max(0) as usize,

@@ -2,18 +2,19 @@
 
 use glam::{DVec3, DVec4};
 
-use super::book::{Book, NESTED};
-use super::curves::{Place, bernstein};
-use super::entities::{Data, NetData, Pointer};
 use crate::base::bbox::Box3;
 use crate::base::math;
 use crate::base::tolerance::{EPSILON, NEAR_MISS, NUDGE, PARALLEL};
 use crate::geometry::nurbs::weighted;
-use crate::io::cad::base::Base;
-use crate::io::cad::carry::check_weights;
+use crate::io::cad::base_surface::Base;
+use crate::io::cad::border::{Border, reach};
+use crate::io::cad::control_nets::trimmed_net;
+use crate::io::cad::curves::check_weights;
 use crate::io::cad::damage::{Damage, damage};
-use crate::io::cad::face::{self, Border};
-use crate::io::cad::nets::trimmed_net;
+use crate::io::cad::face;
+use crate::io::iges::curves::{Place, bernstein};
+use crate::io::iges::entity_data::{Data, NetData, Pointer};
+use crate::io::iges::entity_table::{Book, NESTED};
 use crate::surface::NurbsSurface;
 use crate::surface::swept::revolve::Axis;
 
@@ -29,7 +30,7 @@ impl Book {
         let made = self.base_of(d, &data, depth);
         self.decoded[k].data = data;
         let base = match matrix {
-            Some(m) => made?.carried(&m, &self.tolerance)?,
+            Some(m) => made?.transformed(&m, &self.tolerance)?,
             None => made?,
         };
         Ok(base)
@@ -109,7 +110,7 @@ impl Book {
             }
             let matrix = self.placement(self.entry(of).map_or(0, |e| e.transform))?;
             let base = self.base_of(of, &Data::Round { kind, at, axis, sizes, reference }, depth + 1)?;
-            return matrix.map_or(Ok(base.clone()), |m| base.carried(&m, &self.tolerance));
+            return matrix.map_or(Ok(base.clone()), |m| base.transformed(&m, &self.tolerance));
         }
         let (base, folds) = base.beside(distance, &Box3::EMPTY, self.origin, &self.tolerance)?;
         if folds {
@@ -122,7 +123,7 @@ impl Book {
     pub(super) fn sided(&mut self, d: Pointer, base: Base, loops: &[Vec<Border>]) -> Result<Base, Damage> {
         let k = self.place(d)?;
         let Data::OffsetSurface { indicator, .. } = self.decoded[k].data else { return Ok(base) };
-        let reach = face::reach(loops);
+        let reach = reach(loops);
         let off =
             |book: &Self, base: &Base| Ok::<f64, Damage>(face::off(&base.surface(&reach, book.origin, &book.tolerance)?, loops).distance);
         let here = off(self, &base)?;

@@ -5,14 +5,14 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::part21::File;
-use super::reader::{Frame, Step};
-use super::units::{Units, of_context};
-use crate::base::job;
-use crate::base::limits;
+use crate::base::{job, limits};
 use crate::geometry::Motion;
 use crate::io::cad::assembly::Node;
 use crate::io::cad::damage::{Damage, damage};
+use crate::io::step::product_tables::{Occurrence, Tables};
+use crate::io::step::reader::{Frame, Step};
+use crate::io::step::records::File;
+use crate::io::step::units::{Units, of_context};
 
 /// Products and representations inside each other.
 const DEEP: usize = 64;
@@ -86,113 +86,6 @@ impl Assembly {
             at = instance.parent;
         }
         way
-    }
-}
-
-/// A product in another one.
-#[derive(Clone, Debug)]
-struct Occurrence {
-    entity: u32,
-    child: u32,
-    name: String,
-    /// The relationship between the representations, and the one of the two that is the child's, where the file has it.
-    link: Option<u32>,
-}
-
-#[derive(Debug, Default)]
-struct Tables {
-    /// Items and context of each representation.
-    representations: BTreeMap<u32, (Vec<u32>, Option<u32>)>,
-    /// Representations of each product definition.
-    shapes: BTreeMap<u32, Vec<u32>>,
-    /// Representations that are the same thing in the same place.
-    same: BTreeMap<u32, Vec<u32>>,
-    occurrences: BTreeMap<u32, Vec<Occurrence>>,
-    /// Products that are parts of others.
-    parts: BTreeSet<u32>,
-    /// Representations that mapped items place.
-    mapped: BTreeSet<u32>,
-    /// Representations of what is no product: features, properties.
-    aspects: BTreeSet<u32>,
-    products: Vec<u32>,
-}
-
-/// Whether an entity is a representation of a shape.
-fn is_representation(file: &File, k: u32) -> bool {
-    file.names(k).any(|n| n.ends_with(b"SHAPE_REPRESENTATION"))
-}
-
-impl Tables {
-    fn of(file: &File) -> Self {
-        let mut tables = Self::default();
-        let mut defined: BTreeMap<u32, u32> = BTreeMap::new();
-        let (mut shown, mut links, mut used) = (Vec::new(), Vec::new(), Vec::new());
-        for k in 0..file.records.len() as u32 {
-            if k % 1024 == 0 {
-                job::look();
-            }
-            let row = file.parameters(k);
-            match file.name(k) {
-                b"PRODUCT_DEFINITION" | b"PRODUCT_DEFINITION_WITH_ASSOCIATED_DOCUMENTS" => tables.products.push(k),
-                b"PRODUCT_DEFINITION_SHAPE" => {
-                    if let Ok(of) = row.entity(2) {
-                        defined.insert(k, of);
-                    }
-                }
-                b"SHAPE_DEFINITION_REPRESENTATION" => shown.extend(row.entity(0).ok().zip(row.entity(1).ok())),
-                b"NEXT_ASSEMBLY_USAGE_OCCURRENCE" => used.push(k),
-                b"CONTEXT_DEPENDENT_SHAPE_REPRESENTATION" => links.extend(row.entity(0).ok().zip(row.entity(1).ok())),
-                b"MAPPED_ITEM" => {
-                    let of = row.entity(1).and_then(|map| file.parameters(map).entity(1));
-                    tables.mapped.extend(of);
-                }
-                b"SHAPE_REPRESENTATION_RELATIONSHIP" => {
-                    if let (Ok(a), Ok(b)) = (row.entity(2), row.entity(3)) {
-                        tables.same.entry(a).or_default().push(b);
-                        tables.same.entry(b).or_default().push(a);
-                    }
-                }
-                _ if is_representation(file, k) => {
-                    let row = file.under(k, b"REPRESENTATION").unwrap_or(row);
-                    let items = row.list(1).map(|list| list.values().filter_map(|v| v.entity().ok()).collect()).unwrap_or_default();
-                    tables.representations.insert(k, (items, row.entity(2).ok()));
-                }
-                _ => {}
-            }
-        }
-        for (shape, representation) in shown {
-            match defined.get(&shape) {
-                Some(of) => tables.shapes.entry(*of).or_default().push(representation),
-                None => drop(tables.aspects.insert(representation)),
-            }
-        }
-        // The relationship that places an occurrence.
-        let links: BTreeMap<u32, u32> = links.into_iter().filter_map(|(link, shape)| Some((*defined.get(&shape)?, link))).collect();
-        for k in used {
-            let row = file.parameters(k);
-            let (Ok(parent), Ok(child)) = (row.entity(3), row.entity(4)) else { continue };
-            let text = |n: usize| row.text(n).trim().to_owned();
-            let name = [1, 0, 5].into_iter().map(text).find(|t| !t.is_empty()).unwrap_or_default();
-            tables.parts.insert(child);
-            tables.occurrences.entry(parent).or_default().push(Occurrence { entity: k, child, name, link: links.get(&k).copied() });
-        }
-        tables
-    }
-
-    /// The representations that are one with some, which none of another product is.
-    fn one_with(&self, first: &[u32], owned: &BTreeSet<u32>) -> Vec<u32> {
-        let mut all: Vec<u32> = first.to_vec();
-        let mut seen: BTreeSet<u32> = all.iter().copied().collect();
-        let mut at = 0;
-        while let Some(k) = all.get(at).copied() {
-            at += 1;
-            for other in self.same.get(&k).into_iter().flatten() {
-                if !owned.contains(other) && self.representations.contains_key(other) && seen.insert(*other) {
-                    all.push(*other);
-                }
-            }
-        }
-        all
     }
 }
 

@@ -9,8 +9,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::part21::File;
 use crate::base::job;
+use crate::io::step::records::File;
 
 /// What shapes and representations are of.
 #[derive(Debug, Default)]

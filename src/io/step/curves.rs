@@ -4,16 +4,16 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::conics::Endless;
-use super::reader::{NESTED, Step};
-use super::rows::{Row, Value};
-use super::splines::Knotted;
 use crate::base::tolerance::NEAR_MISS;
 use crate::geometry::composite::Composite;
 use crate::geometry::curve::Shape;
 use crate::geometry::{Curve, Kind, build, closest};
-use crate::io::cad::carry::{check_reach, check_weights, ordered};
+use crate::io::cad::curves::{check_reach, check_weights, ordered};
 use crate::io::cad::damage::{Damage, damage};
+use crate::io::step::conics::Endless;
+use crate::io::step::parameters::{Row, Value};
+use crate::io::step::reader::{NESTED, Step};
+use crate::io::step::splines::Knotted;
 
 /// What a piece of a curve takes from what may be copied.
 const PIECE: usize = 16;
@@ -120,7 +120,7 @@ impl Step<'_> {
     }
 
     fn spline(&mut self, k: u32) -> Result<Curve, Damage> {
-        let Knotted { degree, knots, points, weights } = super::splines::curve(self, k)?;
+        let Knotted { degree, knots, points, weights } = crate::io::step::splines::curve(self, k)?;
         if let ([a, b], true) = (points.as_slice(), weights.windows(2).all(|w| w[0] == w[1])) {
             return Ok(build::line(*a, *b, self.origin)?);
         }

@@ -2,14 +2,14 @@
 
 use glam::DVec3;
 
-use super::reader::{NESTED, Step};
-use crate::base::job;
-use crate::base::math;
+use crate::base::{job, math};
 use crate::geometry::{Curve, build};
-use crate::io::cad::base::Base;
+use crate::io::cad::base_surface::Base;
+use crate::io::cad::border::{Border, backwards, pieces};
 use crate::io::cad::damage::{Damage, damage};
-use crate::io::cad::face::{Border, Face, Known, backwards, least_area, pieces};
+use crate::io::cad::face::{Face, Known, least_area};
 use crate::io::cad::face_loops::FaceLoops;
+use crate::io::step::reader::{NESTED, Step};
 
 impl Step<'_> {
     /// The face that an entity is, looking the other way where it is `turned`.

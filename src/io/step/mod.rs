@@ -9,26 +9,29 @@
 //! stands on it. References are followed to a fixed depth, and what may be copied is bounded.
 
 mod assembly;
+mod bounding_box;
 mod conics;
 mod contexts;
 mod curves;
 mod faces;
-mod looks;
+mod file_check;
+mod items;
+mod line_index;
+mod open;
+mod parameters;
 mod part;
 mod part21;
-mod places;
-mod reach;
+mod product_tables;
 mod reader;
-mod rectangles;
+mod records;
 mod revolved;
-mod rows;
-mod shapes;
-mod sniff;
 mod splines;
 mod strings;
+mod styles;
 mod surfaces;
+mod trimmed_surfaces;
 mod units;
 mod validation;
 pub mod write;
 
-pub use part::{Opened, open};
+pub use crate::io::step::open::{Opened, open};

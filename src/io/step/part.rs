@@ -4,79 +4,22 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 
-use super::assembly::{Assembly, Instance, Placed, assembly};
-use super::looks::{Color, Looks};
-use super::part21::{self, File};
-use super::reader::Step;
-use super::shapes::{Bundle, Item as Shape, Sort, Unread};
-use super::units::Units;
-use super::validation::{self, Given, Of};
-use crate::base::bbox::Box3;
 use crate::base::fault::Malformed;
-use crate::base::job;
-use crate::base::limits;
 use crate::base::tolerance::Tolerance;
+use crate::base::{job, limits};
 use crate::geometry::Motion;
 use crate::io::cad::damage::Damage;
-use crate::io::cad::part::{Figure, Group, Item, Names, Options, Part, Place, Shades, Stated};
-
-/// A file read as far as its records and the places of its products, no geometry yet.
-#[derive(Debug)]
-pub struct Opened<'b> {
-    file: File<'b>,
-    options: Options,
-    assembly: Assembly,
-    warnings: Vec<Malformed>,
-}
-
-/// Reads a file, or says where it stops being one.
-pub fn open<'b>(bytes: &'b [u8], options: &Options) -> Result<Opened<'b>, Malformed> {
-    let mut file = part21::read(bytes)?;
-    if file.records.is_empty() {
-        let why = file.warnings.first().map_or(String::new(), |w| format!(": {}", w.what));
-        return Err(Malformed::line(1, format!("the file holds no entity that can be read{why}")));
-    }
-    let mut warnings = std::mem::take(&mut file.warnings);
-    let mut step = Step::new(&file, *options);
-    let assembly = assembly(&mut step);
-    warnings.append(&mut step.warnings);
-    if assembly.placed.is_empty() {
-        warnings.push(Malformed::line(1, "the file has no shapes: no shape representation has an item"));
-    }
-    Ok(Opened { file, options: *options, assembly, warnings })
-}
+use crate::io::cad::part::{Figure, Group, Item, Names, Part, Place, Shades, Stated};
+use crate::io::step::assembly::{Assembly, Instance, Placed};
+use crate::io::step::items::{Bundle, Item as Shape, Sort, Unread};
+use crate::io::step::open::Opened;
+use crate::io::step::reader::Step;
+use crate::io::step::records::File;
+use crate::io::step::styles::{Color, Looks};
+use crate::io::step::units::Units;
+use crate::io::step::validation::{self, Given, Of};
 
 impl Opened<'_> {
-    /// A box that holds about all that is shown, model units: for the tolerance of the model.
-    pub fn reach(&self) -> Box3 {
-        let mut step = Step::new(&self.file, self.options);
-        let mut boxes: Vec<(u32, Units, Box3)> = Vec::new();
-        let mut known: BTreeMap<u32, usize> = BTreeMap::new();
-        let mut seen = vec![u32::MAX; self.file.records.len()];
-        let mut reach = Box3::EMPTY;
-        for placed in &self.assembly.placed {
-            let k = match known.get(&placed.item).filter(|k| boxes[**k].1 == placed.units) {
-                Some(k) => *k,
-                None => {
-                    step.measure_in(placed.units);
-                    let own = step.reach(placed.item, &mut seen, boxes.len() as u32);
-                    boxes.push((placed.item, placed.units, own));
-                    known.insert(placed.item, boxes.len() - 1);
-                    boxes.len() - 1
-                }
-            };
-            let own = boxes[k].2;
-            if !own.is_empty() {
-                let corner = |k: usize| {
-                    let pick = |bit: usize, low: f64, high: f64| if k >> bit & 1 == 0 { low } else { high };
-                    DVec3::new(pick(0, own.min.x, own.max.x), pick(1, own.min.y, own.max.y), pick(2, own.min.z, own.max.z))
-                };
-                reach = (0..8).fold(reach, |reach, k| reach.with(placed.motion.point(corner(k))));
-            }
-        }
-        reach
-    }
-
     /// Makes curves and faces of the items.
     pub fn part(self, tolerance: Tolerance) -> Part {
         let Self { file, options, assembly, warnings } = self;

@@ -5,93 +5,20 @@
 
 use std::cell::OnceCell;
 
-use super::places::{Lines, Places};
-use super::rows::Row;
 use crate::base::fault::Malformed;
 use crate::base::job;
+use crate::io::step::line_index::Places;
+use crate::io::step::records::{File, Kind, Piece, Record, Token};
 
 /// Lists inside each other.
 const NESTED: usize = 256;
 /// Bytes read again behind damaged records, for each byte of the file.
 const READ_AGAIN: usize = 4;
 
-/// What a token is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
-    /// A number; the span is its text.
-    Number,
-    /// A text; the span is what stands between the quotes.
-    Text,
-    /// An enumeration; the span is what stands between the dots.
-    Enum,
-    /// Hexadecimal digits.
-    Binary,
-    /// `#17`: the start is the number, the end the index of the record or [`Token::NONE`].
-    Ref,
-    /// `$`.
-    Omitted,
-    /// `*`.
-    Derived,
-    /// A list; the end is the index of the token behind it.
-    List,
-    /// A list with a name before it: the start is where the name stands, the end the index of the token behind the list.
-    Typed,
-}
-
-/// A value of a parameter list.
-#[derive(Clone, Copy, Debug)]
-pub struct Token {
-    /// What it is.
-    pub kind: Kind,
-    /// First byte.
-    pub start: u32,
-    /// Byte behind the last one.
-    pub end: u32,
-}
-
-impl Token {
-    /// The record of a reference to nothing.
-    pub const NONE: u32 = u32::MAX;
-}
-
-/// An entity: its names and parameter lists are parts `first..last`, one but for complex entities.
-#[derive(Clone, Copy, Debug)]
-pub struct Record {
-    /// Its number.
-    pub id: u32,
-    /// Byte where it starts.
-    pub at: u32,
-    first: u32,
-    last: u32,
-}
-
-/// A name with its parameter list.
-#[derive(Clone, Copy, Debug)]
-struct Piece {
-    name: (u32, u32),
-    tokens: (u32, u32),
-}
-
-/// The records of a file.
-#[derive(Debug)]
-pub struct File<'b> {
-    /// All of it.
-    pub bytes: &'b [u8],
-    /// Values of all records.
-    pub tokens: Vec<Token>,
-    /// Entities in file order.
-    pub records: Vec<Record>,
-    pieces: Vec<Piece>,
-    places: Places,
-    lines: OnceCell<Lines>,
-    /// What could not be read.
-    pub warnings: Vec<Malformed>,
-}
-
 /// Reads a file, or says why it is none.
 pub fn read(bytes: &[u8]) -> Result<File<'_>, Malformed> {
     let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
-    super::sniff::check(bytes)?;
+    crate::io::step::file_check::check(bytes)?;
     let mut reader = Reader { bytes, at: 0, tokens: Vec::with_capacity(bytes.len() / 6), pieces: Vec::new(), open: Vec::new() };
     let (mut records, mut wrong) = (Vec::with_capacity(bytes.len() / 64), Vec::new());
     let mut again = READ_AGAIN * bytes.len();
@@ -113,81 +40,6 @@ pub fn read(bytes: &[u8]) -> Result<File<'_>, Malformed> {
     file.number(&mut warnings);
     file.warnings = warnings;
     Ok(file)
-}
-
-impl<'b> File<'b> {
-    /// Sorts the numbers and follows references to records.
-    fn number(&mut self, warnings: &mut Vec<Malformed>) {
-        let (places, doubled) = Places::of(self.records.iter().map(|r| r.id));
-        for k in doubled {
-            let record = self.records[k as usize];
-            let what = format!("#{} is defined again; the first definition is used", record.id);
-            warnings.push(Malformed::line(self.line_of(record.at), what));
-        }
-        self.places = places;
-        for token in job::looking(&mut self.tokens) {
-            if token.kind == Kind::Ref {
-                token.end = self.places.find(token.start).unwrap_or(Token::NONE);
-            }
-        }
-    }
-
-    /// The line of a byte, from 1.
-    pub fn line_of(&self, at: u32) -> u64 {
-        self.lines.get_or_init(|| Lines::of(self.bytes)).of_byte(at)
-    }
-
-    /// The line of a record.
-    pub fn line(&self, k: u32) -> u64 {
-        self.records.get(k as usize).map_or(0, |r| self.line_of(r.at))
-    }
-
-    /// Its number.
-    pub fn id(&self, k: u32) -> u32 {
-        self.records.get(k as usize).map_or(0, |r| r.id)
-    }
-
-    fn pieces_of(&self, k: u32) -> &[Piece] {
-        self.records.get(k as usize).map_or(&[], |r| &self.pieces[r.first as usize..r.last as usize])
-    }
-
-    fn text(&self, (a, b): (u32, u32)) -> &'b [u8] {
-        &self.bytes[a as usize..b as usize]
-    }
-
-    /// The name of a simple entity; the first one of a complex entity.
-    pub fn name(&self, k: u32) -> &'b [u8] {
-        self.pieces_of(k).first().map_or(&[], |p| self.text(p.name))
-    }
-
-    /// All names of an entity.
-    pub fn names(&self, k: u32) -> impl Iterator<Item = &'b [u8]> {
-        self.pieces_of(k).iter().map(|p| self.text(p.name))
-    }
-
-    /// Whether one of its names is this one.
-    pub fn is(&self, k: u32, name: &[u8]) -> bool {
-        self.names(k).any(|n| n == name)
-    }
-
-    /// Whether it is written with several names.
-    pub fn is_complex(&self, k: u32) -> bool {
-        self.pieces_of(k).len() > 1
-    }
-
-    /// The parameters under a name.
-    pub fn under(&self, k: u32, name: &[u8]) -> Option<Row<'_>> {
-        self.pieces_of(k).iter().find(|p| self.text(p.name) == name).map(|p| self.row(p))
-    }
-
-    /// The parameters of a simple entity; those under the first name of a complex one.
-    pub fn parameters(&self, k: u32) -> Row<'_> {
-        self.pieces_of(k).first().map_or(Row { file: self, first: 0, end: 0 }, |p| self.row(p))
-    }
-
-    fn row(&self, piece: &Piece) -> Row<'_> {
-        Row { file: self, first: piece.tokens.0, end: piece.tokens.1 }
-    }
 }
 
 /// What is wrong at a byte.

@@ -4,17 +4,16 @@ use std::collections::BTreeMap;
 
 use glam::{DMat3, DVec3};
 
-use super::part21::File;
-use super::units::Units;
 use crate::base::fault::Malformed;
-use crate::base::limits;
-use crate::base::math;
 use crate::base::origin::Origin;
 use crate::base::tolerance::{PARALLEL, Tolerance};
+use crate::base::{limits, math};
 use crate::geometry::{Curve, Motion};
-use crate::io::cad::base::Base;
+use crate::io::cad::base_surface::Base;
 use crate::io::cad::damage::{Damage, damage};
 use crate::io::cad::part::{Options, Unusable};
+use crate::io::step::records::File;
+use crate::io::step::units::Units;
 
 /// Curves, surfaces and other things that are made of things of their kind.
 pub const NESTED: usize = 32;

@@ -2,17 +2,17 @@
 
 use glam::DVec3;
 
-use super::conics::Endless;
-use super::curves::Course;
-use super::reader::Step;
 use crate::base::math;
 use crate::base::tolerance::PARALLEL;
 use crate::geometry::{Curve, build};
-use crate::io::cad::axis_cut::Clear;
-use crate::io::cad::base::{BEYOND, Base};
+use crate::io::cad::base_surface::{BEYOND, Base};
 use crate::io::cad::damage::{Damage, damage};
 use crate::io::cad::face::Face;
 use crate::io::cad::face_loops::FaceLoops;
+use crate::io::cad::revolution_profile::Clear;
+use crate::io::step::conics::Endless;
+use crate::io::step::curves::Course;
+use crate::io::step::reader::Step;
 use crate::surface::swept::revolve::Axis;
 
 const TURN: f64 = std::f64::consts::TAU;

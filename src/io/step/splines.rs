@@ -2,10 +2,10 @@
 
 use glam::DVec3;
 
-use super::reader::Step;
-use super::rows::Row;
 use crate::geometry::nurbs::MAX_DEGREE;
 use crate::io::cad::damage::{Damage, damage};
+use crate::io::step::parameters::Row;
+use crate::io::step::reader::Step;
 
 /// A rational B-spline.
 #[derive(Clone, Debug)]

@@ -2,19 +2,19 @@
 
 use glam::{DVec3, DVec4};
 
-use super::conics::Endless;
-use super::curves::Course;
-use super::reader::{Frame, NESTED, Step};
-use super::splines::{self, Netted};
 use crate::base::math;
 use crate::base::tolerance::{EPSILON, PARALLEL};
 use crate::geometry::Curve;
 use crate::geometry::nurbs::weighted;
-use crate::io::cad::base::{BEYOND, Base};
-use crate::io::cad::carry::check_weights;
+use crate::io::cad::base_surface::{BEYOND, Base};
+use crate::io::cad::control_nets::trimmed_net;
+use crate::io::cad::curves::check_weights;
 use crate::io::cad::damage::{Damage, damage};
 use crate::io::cad::face_loops::FaceLoops;
-use crate::io::cad::nets::trimmed_net;
+use crate::io::step::conics::Endless;
+use crate::io::step::curves::Course;
+use crate::io::step::reader::{Frame, NESTED, Step};
+use crate::io::step::splines::{self, Netted};
 use crate::surface::NurbsSurface;
 use crate::surface::swept::revolve::Axis;
 

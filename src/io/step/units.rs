@@ -1,9 +1,9 @@
 //! Units of lengths and angles, and the distance within which points are one, by the context of a representation.
 
-use super::part21::File;
-use super::rows::Row;
 use crate::base::tolerance::WHOLE_NUMBER;
 use crate::io::cad::damage::{Damage, damage};
+use crate::io::step::parameters::Row;
+use crate::io::step::records::File;
 
 /// Units that are made of units.
 const NESTED: usize = 8;

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::part21::File;
-use super::units::unit_of_length;
+use crate::io::step::records::File;
+use crate::io::step::units::unit_of_length;
 
 /// A stated figure, in millimetres; a centroid still in the units of its context.
 #[derive(Clone, Copy, Debug)]

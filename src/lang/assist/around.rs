@@ -1,12 +1,12 @@
 //! What stands around a place: the operand before a dot, and the names that hold in its declaration alone.
 
-use super::scripts::{Locals, Scripts};
-use super::shape::Shape;
+use crate::lang::assist::scripts::{Locals, Scripts};
+use crate::lang::assist::shape::Shape;
 use crate::lang::syntax::{Kind, Tokens, scan, split};
-use crate::lang::types::Ty;
+use crate::lang::values::types::Ty;
 
 /// The first token of the operand that ends before `end`: names, fields, calls, indices.
-pub(super) fn operand(tokens: &Tokens, start: usize, end: usize) -> Option<usize> {
+pub(crate) fn operand(tokens: &Tokens, start: usize, end: usize) -> Option<usize> {
     let mut at = end.checked_sub(1).filter(|at| *at >= start)?;
     loop {
         let kind = tokens.kinds[at];
@@ -52,7 +52,7 @@ fn opener(tokens: &Tokens, start: usize, close: usize) -> Option<usize> {
 }
 
 /// Names of `for`, `let … in` and parameters in the declaration around a place, also where these stand behind it.
-pub(super) fn locals(scripts: &Scripts<'_>, at: usize) -> Locals {
+pub(crate) fn locals(scripts: &Scripts<'_>, at: usize) -> Locals {
     let home = scripts.unit(0);
     let tokens = scan(&home.text);
     let (pieces, _) = split(&tokens);

@@ -1,12 +1,13 @@
 //! The brackets around a place in a half-typed declaration, and what each of them is.
 
-use crate::lang::settings::{self, Setting};
 use crate::lang::syntax::ast::Keyword;
 use crate::lang::syntax::{Kind, Tokens};
+use crate::lang::values::settings;
+use crate::lang::values::settings::Setting;
 
 /// What an open bracket is.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Role {
+pub(crate) enum Role {
     /// None: the declaration itself.
     Top,
     /// Arguments of the function whose name is this token.
@@ -29,7 +30,7 @@ pub(super) enum Role {
 
 /// An open bracket.
 #[derive(Clone, Debug)]
-pub(super) struct Frame {
+pub(crate) struct Frame {
     pub role: Role,
     /// The bracket's token; the keyword's at the top.
     pub at: usize,
@@ -57,7 +58,7 @@ impl Frame {
 }
 
 /// What is open before the token `end` of a declaration that starts at token `start`; the first is the declaration.
-pub(super) fn frames(tokens: &Tokens, start: usize, end: usize) -> Vec<Frame> {
+pub(crate) fn frames(tokens: &Tokens, start: usize, end: usize) -> Vec<Frame> {
     let keyword = tokens.kinds[start].keyword();
     let mut open = vec![Frame::new(Role::Top, start)];
     // What is asked of a session has no keyword.

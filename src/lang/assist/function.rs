@@ -1,11 +1,11 @@
 //! What a call takes, whoever declares it: the language, a script, a module's params, or `import`.
 
-use super::scripts::{Code, Scripts};
-use super::shape::Shape;
-use crate::lang::settings::FILE_UNITS;
-use crate::lang::std::{Builtin, builtins, fields};
+use crate::lang::assist::scripts::{Code, Scripts};
+use crate::lang::assist::shape::Shape;
+use crate::lang::eval::std::{Builtin, builtins, fields};
 use crate::lang::syntax::ast::{Allowed, DeclarationKind, FnParam, Keyword};
-use crate::lang::types::Ty;
+use crate::lang::values::settings::FILE_UNITS;
+use crate::lang::values::types::Ty;
 
 /// A parameter.
 #[derive(Clone, Debug)]
@@ -65,8 +65,8 @@ impl Function {
         builtins().chain(fields()).find(|b| b.name == name).map(Self::of_builtin)
     }
 
-    pub(super) fn of_builtin(builtin: &'static Builtin) -> Self {
-        let parameter = |p: &crate::lang::std::Param| Parameter {
+    pub(crate) fn of_builtin(builtin: &'static Builtin) -> Self {
+        let parameter = |p: &crate::lang::eval::std::Param| Parameter {
             default: p.default.map(str::to_owned),
             ..Parameter::new(p.name, p.ty, p.docs.trim())
         };
@@ -80,7 +80,7 @@ impl Function {
     }
 
     /// A function that a script declares.
-    pub(super) fn of_script(scripts: &Scripts<'_>, unit: usize, name: &str) -> Option<Self> {
+    pub(crate) fn of_script(scripts: &Scripts<'_>, unit: usize, name: &str) -> Option<Self> {
         let home = scripts.unit(unit);
         let (_, declaration) = home.declaration(name)?;
         let DeclarationKind::Fn { params, .. } = &declaration.kind else { return None };
@@ -100,7 +100,7 @@ impl Function {
     }
 
     /// The params of a module, which `use` takes in brackets.
-    pub(super) fn of_module(scripts: &Scripts<'_>, module: usize) -> Self {
+    pub(crate) fn of_module(scripts: &Scripts<'_>, module: usize) -> Self {
         let home = scripts.unit(module);
         let of_name = |name: &String| Self::param_of_script(scripts, module, name);
         let params: Vec<Parameter> = home.order.iter().filter_map(of_name).collect();
@@ -110,7 +110,7 @@ impl Function {
     }
 
     /// A `param` of a script.
-    pub(super) fn param_of_script(scripts: &Scripts<'_>, unit: usize, name: &str) -> Option<Parameter> {
+    pub(crate) fn param_of_script(scripts: &Scripts<'_>, unit: usize, name: &str) -> Option<Parameter> {
         let home = scripts.unit(unit);
         let (_, declaration) = home.declaration(name).filter(|(_, d)| d.keyword == Keyword::Param)?;
         let DeclarationKind::Param { value, allowed, .. } = &declaration.kind else { return None };
@@ -133,7 +133,7 @@ impl Function {
     }
 
     /// What `import` takes in brackets.
-    pub(super) fn of_import() -> Self {
+    pub(crate) fn of_import() -> Self {
         let params = vec![
             Parameter::new("header", Ty::Bool, "The first line of a table holds names, also where all its cells are numbers."),
             Parameter::new("unit", Ty::Choice(FILE_UNITS), "Unit of the bare numbers in the file."),

@@ -1,13 +1,13 @@
 //! The types of names and expressions, from their text alone.
 
-use super::function::Function;
-use super::scripts::{Code, Locals, Scripts};
-use super::shape::Shape;
-use crate::lang::std::{builtins, fields};
+use crate::lang::assist::function::Function;
+use crate::lang::assist::scripts::{Code, Locals, Scripts};
+use crate::lang::assist::shape::Shape;
+use crate::lang::eval::std::{builtins, fields};
 use crate::lang::syntax::ast::{Arg, Binary, Clause, Declaration, DeclarationKind, Expr, ExprId, FnParam, For, Keyword, TextPart, Unary};
-use crate::lang::types::Ty;
-use crate::lang::units::{MILLIMETRE, quantity};
-use crate::lang::value::Dim;
+use crate::lang::values::types::Ty;
+use crate::lang::values::units::{MILLIMETRE, quantity};
+use crate::lang::values::value::Dim;
 
 /// How deep the search for a type goes.
 const DEPTH: u32 = 64;
@@ -16,7 +16,7 @@ const ALIKE: [&str; 8] = ["move", "rotate", "scale", "mirror", "reverse", "sort"
 
 impl Scripts<'_> {
     /// The type of a name in a script.
-    pub(super) fn shape_of_name(&self, unit: usize, name: &str, locals: &Locals) -> Shape {
+    pub(crate) fn shape_of_name(&self, unit: usize, name: &str, locals: &Locals) -> Shape {
         if let Some((_, shape)) = locals.iter().rev().find(|(local, _)| local == name) {
             return shape.clone();
         }
@@ -90,7 +90,7 @@ impl Scripts<'_> {
     }
 
     /// What a function of a script gives.
-    pub(super) fn result_of_fn(&self, unit: usize, declaration: &Declaration) -> Shape {
+    pub(crate) fn result_of_fn(&self, unit: usize, declaration: &Declaration) -> Shape {
         let home = self.unit(unit);
         let code = Code { unit, names: &home.names, nodes: &declaration.nodes };
         let DeclarationKind::Fn { params, returns, body, .. } = &declaration.kind else { return Shape::Unknown };
@@ -101,7 +101,7 @@ impl Scripts<'_> {
         self.deeper(|| self.shape(code, *body, &mut locals)).unwrap_or_default()
     }
 
-    pub(super) fn shape_of_param(&self, code: Code<'_>, param: &FnParam) -> Shape {
+    pub(crate) fn shape_of_param(&self, code: Code<'_>, param: &FnParam) -> Shape {
         match (param.ty.and_then(|ty| Ty::written(code.text(ty.name), ty.lists)), param.default) {
             (Some(ty), _) => Shape::of(ty),
             (None, Some(default)) => self.deeper(|| self.shape(code, default, &mut Locals::new())).unwrap_or_default(),
@@ -110,7 +110,7 @@ impl Scripts<'_> {
     }
 
     /// The type of an expression.
-    pub(super) fn shape(&self, code: Code<'_>, id: ExprId, locals: &mut Locals) -> Shape {
+    pub(crate) fn shape(&self, code: Code<'_>, id: ExprId, locals: &mut Locals) -> Shape {
         self.deeper(|| self.shape_here(code, id, locals)).unwrap_or_default()
     }
 
@@ -183,7 +183,7 @@ impl Scripts<'_> {
     }
 
     /// The type of `of.name`.
-    pub(super) fn member(&self, unit: usize, of: &Shape, name: &str) -> Shape {
+    pub(crate) fn member(&self, unit: usize, of: &Shape, name: &str) -> Shape {
         match of {
             Shape::Module(module) => return self.shape_of_name(*module, name, &Locals::new()),
             Shape::Record(keys) => {
@@ -239,7 +239,7 @@ fn literal(code: Code<'_>, id: ExprId) -> Option<String> {
 }
 
 /// What a declaration with this keyword must be.
-pub(super) fn by_keyword(keyword: Keyword) -> Shape {
+pub(crate) fn by_keyword(keyword: Keyword) -> Shape {
     match keyword {
         Keyword::Point => Shape::Is(Ty::Point),
         Keyword::Curve | Keyword::ModelingCurve => Shape::Is(Ty::Curve),

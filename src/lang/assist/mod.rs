@@ -3,23 +3,23 @@
 //! Everything is found in the text, in the modules it names and in what the last run showed; nothing is evaluated. So it
 //! works in half-typed text, at once, and for session and language server alike.
 
-mod around;
-mod frames;
-mod function;
-mod infer;
-mod offer;
-mod place;
-mod scripts;
-mod shape;
-mod tell;
+pub mod around;
+pub mod frames;
+pub mod function;
+pub mod infer;
+pub mod offer;
+pub mod place;
+pub mod scripts;
+pub mod shape;
+pub mod tell;
 
-pub use function::{Function, Parameter};
-pub use offer::{Candidate, Offer, Sort};
-pub use scripts::{Known, Open};
-pub use shape::Shape;
-pub use tell::{About, told};
+pub use crate::lang::assist::function::{Function, Parameter};
+pub use crate::lang::assist::offer::{Candidate, Offer, Sort};
+pub use crate::lang::assist::scripts::{Known, Open};
+pub use crate::lang::assist::shape::Shape;
+pub use crate::lang::assist::tell::{About, told};
 
-use scripts::Scripts;
+use crate::lang::assist::scripts::Scripts;
 
 /// Longest text that is looked at while it is typed.
 pub const LONGEST: usize = 4 << 20;

@@ -1,14 +1,14 @@
 //! Candidates for a place, the likeliest first.
 
-use super::function::{Function, Parameter};
-use super::place::{Place, Stand, Wanted, stand};
-use super::scripts::{Scripts, Unit};
-use super::shape::Shape;
-use crate::lang::settings::{Setting, default_words};
-use crate::lang::std::{Builtin, builtins, fields};
+use crate::lang::assist::function::{Function, Parameter};
+use crate::lang::assist::place::{Place, Stand, Wanted, stand};
+use crate::lang::assist::scripts::{Scripts, Unit};
+use crate::lang::assist::shape::Shape;
+use crate::lang::eval::std::{Builtin, builtins, fields};
 use crate::lang::syntax::ast::Keyword;
 use crate::lang::syntax::keywords::{WORDS, openers, written};
-use crate::lang::types::{TYPE_NAMES, Ty};
+use crate::lang::values::settings::{Setting, default_words};
+use crate::lang::values::types::{TYPE_NAMES, Ty};
 
 /// What a candidate is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -88,7 +88,7 @@ const ARGUMENT: u8 = 2;
 const FUNCTION: u8 = 3;
 const OTHER: u8 = 4;
 
-pub(super) fn offer(scripts: &Scripts<'_>, at: usize, session: bool) -> Offer {
+pub(crate) fn offer(scripts: &Scripts<'_>, at: usize, session: bool) -> Offer {
     let home = scripts.unit(0);
     let mut here = stand(scripts, at);
     let mut offered = Offered { word: &home.text[here.start..at], found: Vec::new() };

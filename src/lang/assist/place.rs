@@ -1,20 +1,20 @@
 //! Where a place in a text stands: what may follow there, found in the tokens before it, so that half-typed text will do.
 
-use super::around::{locals, operand};
-use super::frames::{Frame, Role, frames};
-use super::function::Function;
-use super::scripts::{Locals, Scripts};
-use super::shape::Shape;
-use crate::lang::settings::Setting;
+use crate::lang::assist::around::{locals, operand};
+use crate::lang::assist::frames::{Frame, Role, frames};
+use crate::lang::assist::function::Function;
+use crate::lang::assist::scripts::{Locals, Scripts};
+use crate::lang::assist::shape::Shape;
 use crate::lang::syntax::ast::Keyword;
 use crate::lang::syntax::{Kind, Tokens, scan, split};
-use crate::lang::types::Ty;
-use crate::lang::units::LENGTHS;
-use crate::lang::value::Dim;
+use crate::lang::values::settings::Setting;
+use crate::lang::values::types::Ty;
+use crate::lang::values::units::LENGTHS;
+use crate::lang::values::value::Dim;
 
 /// What may stand at a place.
 #[derive(Debug)]
-pub(super) enum Place {
+pub(crate) enum Place {
     /// Nothing that is known: a comment, a number, a name that is being made.
     Nothing,
     /// A declaration, or what is asked of a session.
@@ -35,7 +35,7 @@ pub(super) enum Place {
 
 /// What is wanted of a value.
 #[derive(Debug, Default)]
-pub(super) struct Wanted {
+pub(crate) struct Wanted {
     pub ty: Option<Ty>,
     /// The call, where an argument begins: its parameters that are not given yet may be named.
     pub call: Option<(Function, Vec<String>)>,
@@ -46,7 +46,7 @@ pub(super) struct Wanted {
 }
 
 /// A place in a script.
-pub(super) struct Stand {
+pub(crate) struct Stand {
     pub place: Place,
     pub locals: Locals,
     /// First byte of the word at hand.
@@ -58,7 +58,7 @@ pub(super) struct Stand {
 }
 
 /// Where `at` stands in the main script.
-pub(super) fn stand(scripts: &Scripts<'_>, at: usize) -> Stand {
+pub(crate) fn stand(scripts: &Scripts<'_>, at: usize) -> Stand {
     let home = scripts.unit(0);
     let before = &home.text[..at];
     let tokens = scan(before);

@@ -4,12 +4,13 @@ use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use super::shape::Shape;
-use crate::lang::diag::FileId;
-use crate::lang::names::{Name, Names};
-use crate::lang::syntax::ast::{Declaration, DeclarationKind, Keyword, Node, Script, Span};
+use crate::lang::assist::shape::Shape;
+use crate::lang::diag::diagnostic::FileId;
+use crate::lang::diag::span::Span;
+use crate::lang::syntax::ast::{Declaration, DeclarationKind, Keyword, Node, Script};
 use crate::lang::syntax::outline::outline;
 use crate::lang::syntax::parse;
+use crate::lang::words::names::{Name, Names};
 
 /// Gives path and text of the file that a script (its path first) names so in `use`.
 pub type Open<'o> = &'o dyn Fn(&str, &str) -> Option<(String, String)>;
@@ -20,7 +21,7 @@ pub type Known = BTreeMap<String, Shape>;
 const MODULES: usize = 64;
 
 /// One script.
-pub(super) struct Unit {
+pub(crate) struct Unit {
     pub path: String,
     pub text: String,
     pub script: Script,
@@ -36,7 +37,7 @@ pub(super) struct Unit {
 
 /// A name of a script.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Entry {
+pub(crate) struct Entry {
     pub keyword: Keyword,
     /// Its declaration, when that is sound.
     pub declaration: Option<usize>,
@@ -57,7 +58,7 @@ impl Unit {
             }
         }
         for (at, declaration) in script.declarations.iter().enumerate().rev() {
-            let Some(bound) = crate::lang::module::bound(declaration) else { continue };
+            let Some(bound) = crate::lang::syntax::ast::bound(declaration) else { continue };
             let entry = Entry { keyword: declaration.keyword, declaration: Some(at) };
             declared.insert(names.text(bound.name).to_owned(), entry);
         }
@@ -77,7 +78,7 @@ impl Unit {
 
 /// Expressions with the names they are written in.
 #[derive(Clone, Copy)]
-pub(super) struct Code<'c> {
+pub(crate) struct Code<'c> {
     /// The script whose names they see.
     pub unit: usize,
     pub names: &'c Names,
@@ -91,10 +92,10 @@ impl Code<'_> {
 }
 
 /// Names of `for`, `let … in` and parameters, the innermost last.
-pub(super) type Locals = Vec<(String, Shape)>;
+pub(crate) type Locals = Vec<(String, Shape)>;
 
 /// All scripts at hand.
-pub(super) struct Scripts<'o> {
+pub(crate) struct Scripts<'o> {
     units: RefCell<Vec<Rc<Unit>>>,
     open: Open<'o>,
     known: &'o Known,

@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use crate::lang::names::{Name, Names};
-use crate::lang::types::Ty;
-use crate::lang::value::{Dim, Value};
+use crate::lang::values::types::Ty;
+use crate::lang::values::value::{Dim, Value};
+use crate::lang::words::names::{Name, Names};
 
 /// Members of a list that are looked at, and lists inside lists.
 const LOOKED_AT: (usize, u32) = (8, 4);

@@ -1,15 +1,16 @@
 //! What a word means where it stands.
 
-use super::function::{Function, Parameter};
-use super::place::{Place, stand};
-use super::scripts::Scripts;
-use super::shape::Shape;
-use crate::lang::settings::{Setting, range};
-use crate::lang::std::{builtins, fields};
+use crate::lang::assist::function::{Function, Parameter};
+use crate::lang::assist::place::{Place, stand};
+use crate::lang::assist::scripts::Scripts;
+use crate::lang::assist::shape::Shape;
+use crate::lang::eval::std::{builtins, fields};
 use crate::lang::syntax::ast::Keyword;
-use crate::lang::syntax::keywords::{self, written};
+use crate::lang::syntax::keywords;
+use crate::lang::syntax::keywords::written;
 use crate::lang::syntax::scan;
-use crate::lang::types::Ty;
+use crate::lang::values::settings::{Setting, range};
+use crate::lang::values::types::Ty;
 
 /// What is known of a word.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -33,7 +34,7 @@ pub fn told(line: &str, docs: &str) -> String {
 }
 
 /// What the word at a byte means.
-pub(super) fn about(scripts: &Scripts<'_>, at: usize) -> Option<About> {
+pub(crate) fn about(scripts: &Scripts<'_>, at: usize) -> Option<About> {
     let home = scripts.unit(0);
     let text = home.text.as_str();
     let is_word = |c: char| c.is_alphanumeric() || c == '_';

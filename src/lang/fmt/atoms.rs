@@ -10,7 +10,7 @@ use crate::lang::syntax::{Kind, Tokens};
 
 /// A comment, `///` lines included.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Comment {
+pub(crate) struct Comment {
     pub start: u32,
     pub end: u32,
     /// `/// …` that begins a line.
@@ -19,7 +19,7 @@ pub(super) struct Comment {
 
 /// One token, or a whole string with all that is interpolated in it.
 #[derive(Clone, Debug)]
-pub(super) struct Atom {
+pub(crate) struct Atom {
     pub kind: Kind,
     pub start: u32,
     pub end: u32,
@@ -55,7 +55,7 @@ impl Atom {
 
 /// What stands between two tokens.
 #[derive(Debug, Default)]
-pub(super) struct Gap {
+pub(crate) struct Gap {
     pub trailing: Range<usize>,
     pub own: Range<usize>,
     pub before: Range<usize>,
@@ -63,14 +63,14 @@ pub(super) struct Gap {
 }
 
 /// A file with its comments in order.
-pub(super) struct Text<'a> {
+pub(crate) struct Text<'a> {
     pub source: &'a str,
     pub tokens: &'a Tokens,
     pub comments: Vec<Comment>,
 }
 
 /// Columns of a text on a screen; beyond any line when it has several.
-pub(super) fn width(text: &str) -> u32 {
+pub(crate) fn width(text: &str) -> u32 {
     if text.is_ascii() {
         return if text.len() > 120 && text.contains('\n') { MANY } else { text.len() as u32 };
     }

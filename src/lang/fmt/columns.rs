@@ -2,14 +2,14 @@
 
 use std::ops::Range;
 
-use super::atoms::width;
-use super::writer::{COLUMNS, Line, NOWHERE, Writer};
+use crate::lang::fmt::atoms::width;
+use crate::lang::fmt::writer::{COLUMNS, Line, NOWHERE, Writer};
 
 /// Blanks before a comment at the end of a line.
 const APART: u32 = 2;
 
 /// The text with its columns.
-pub(super) fn align(writer: Writer<'_>) -> String {
+pub(crate) fn align(writer: Writer<'_>) -> String {
     let Writer { out, lines, .. } = writer;
     if lines.iter().all(|l| l.comment == NOWHERE && !l.wide_mark) {
         return out;

@@ -5,7 +5,7 @@
 /// The [`Cmd::Break`]s of a group end the line all together, or none of them does when the group fits on its line. The
 /// next line begins at the indentation that holds when something is written on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Cmd {
+pub(crate) enum Cmd {
     /// An atom.
     Text(u32),
     /// The comments above an atom.

@@ -1,7 +1,7 @@
 //! Declarations to commands.
 
-use super::command::Cmd;
-use super::expression::{Builder, Form};
+use crate::lang::fmt::command::Cmd;
+use crate::lang::fmt::expression::{Builder, Form};
 use crate::lang::syntax::Kind;
 
 /// Marks `{` of a clause; those of declarations are one more than their keyword's number.

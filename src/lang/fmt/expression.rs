@@ -1,12 +1,12 @@
 //! Expressions to commands.
 
-use super::atoms::Atom;
-use super::command::Cmd;
+use crate::lang::fmt::atoms::Atom;
+use crate::lang::fmt::command::Cmd;
 use crate::lang::syntax::Kind;
 
 /// What an expression looks like from outside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Form {
+pub(crate) enum Form {
     /// One operand that ends with its own closing bracket: it may be broken inside it.
     Bracketed,
     /// Anything else.
@@ -14,7 +14,7 @@ pub(super) enum Form {
 }
 
 /// Writes the commands of one sound declaration; that it is sound is what all indexing here rests on.
-pub(super) struct Builder<'a> {
+pub(crate) struct Builder<'a> {
     pub atoms: &'a [Atom],
     /// Where the bracket of an atom is closed.
     mates: &'a [u32],
@@ -44,7 +44,7 @@ fn strength(kind: Kind) -> u8 {
 }
 
 /// For each atom the one that closes its bracket.
-pub(super) fn mates(atoms: &[Atom], mates: &mut Vec<u32>) {
+pub(crate) fn mates(atoms: &[Atom], mates: &mut Vec<u32>) {
     mates.clear();
     mates.resize(atoms.len(), 0);
     let mut open = Vec::new();

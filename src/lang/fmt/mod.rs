@@ -14,21 +14,22 @@
 //!   lines stand below each other where the author set one of them off by more blanks than needed.
 //! - A broken declaration stays as it is, byte for byte.
 
-mod atoms;
-mod columns;
-mod command;
-mod declaration;
-mod expression;
-mod writer;
+pub mod atoms;
+pub mod columns;
+pub mod command;
+pub mod declaration;
+pub mod expression;
+pub mod writer;
 
 use std::ops::Range;
 
-use crate::lang::diag::{Diagnostic, FileId};
-use crate::lang::names::Names;
-use crate::lang::syntax::{self, Tokens};
-use atoms::{Comment, Text};
-use expression::Builder;
-use writer::Writer;
+use crate::lang::diag::diagnostic::{Diagnostic, FileId};
+use crate::lang::fmt::atoms::{Comment, Text};
+use crate::lang::fmt::expression::Builder;
+use crate::lang::fmt::writer::Writer;
+use crate::lang::syntax;
+use crate::lang::syntax::Tokens;
+use crate::lang::words::names::Names;
 
 /// A script in canonical layout.
 #[derive(Clone, Debug)]

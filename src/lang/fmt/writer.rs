@@ -2,17 +2,17 @@
 
 use std::ops::Range;
 
-use super::atoms::{Atom, Text, width};
-use super::command::Cmd;
+use crate::lang::fmt::atoms::{Atom, Text, width};
+use crate::lang::fmt::command::Cmd;
 
 /// Columns of a line, the comment at its end aside.
-pub(super) const COLUMNS: u32 = 100;
+pub(crate) const COLUMNS: u32 = 100;
 /// Blanks of one indentation.
 const INDENT: u32 = 2;
 
 /// What is known of a written line.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Line {
+pub(crate) struct Line {
     /// Its first byte.
     pub start: u32,
     /// Its indentation.
@@ -31,10 +31,10 @@ pub(super) struct Line {
 }
 
 /// No place in a line.
-pub(super) const NOWHERE: u32 = u32::MAX;
+pub(crate) const NOWHERE: u32 = u32::MAX;
 
 /// The text that grows, and what is known of its lines.
-pub(super) struct Writer<'a> {
+pub(crate) struct Writer<'a> {
     text: &'a Text<'a>,
     pub out: String,
     pub lines: Vec<Line>,

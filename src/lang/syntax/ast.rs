@@ -1,15 +1,7 @@
 //! The tree of a script: one small arena per declaration.
 
-use crate::lang::names::Name;
-
-/// A stretch of a file, bytes, half open.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Span {
-    /// First byte.
-    pub start: u32,
-    /// Byte after the last one.
-    pub end: u32,
-}
+use crate::lang::diag::span::Span;
+use crate::lang::words::names::Name;
 
 crate::ids! {
     /// An expression of a declaration's arena.
@@ -395,4 +387,16 @@ pub struct Script {
     pub declarations: Vec<Declaration>,
     /// Names that broken declarations would have bound: what uses them is skipped without a message.
     pub broken: Vec<Bound>,
+}
+
+/// The name that a declaration binds.
+pub(crate) fn bound(declaration: &Declaration) -> Option<Bound> {
+    match &declaration.kind {
+        DeclarationKind::Load { bound, .. }
+        | DeclarationKind::Param { bound, .. }
+        | DeclarationKind::Fn { bound, .. }
+        | DeclarationKind::Value { bound, .. }
+        | DeclarationKind::Collection { bound, .. } => Some(*bound),
+        _ => None,
+    }
 }

@@ -1,13 +1,14 @@
 //! Operators in their order: a flat list of operands and operators to a tree, without recursion.
 
-use super::ast::*;
-use super::mistake::Refused;
-use super::token::Kind;
-use super::tree::{Builder, Result};
+use crate::lang::diag::span::Span;
+use crate::lang::syntax::ast::*;
+use crate::lang::syntax::mistake::Refused;
+use crate::lang::syntax::token::Kind;
+use crate::lang::syntax::tree::{Builder, Result};
 
 /// A finished part of an expression, brackets included in its extent.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Term {
+pub(crate) struct Term {
     pub id: ExprId,
     /// First and last token.
     pub span: Span,
@@ -50,7 +51,7 @@ impl Operator {
 
 /// Two stacks: operands, and operators that wait for their right side.
 #[derive(Default)]
-pub(super) struct Climber {
+pub(crate) struct Climber {
     operands: Vec<Term>,
     operators: Vec<Operator>,
 }

@@ -5,16 +5,16 @@
 
 use pest::error::{Error, ErrorVariant, InputLocation};
 
-use super::Rule;
-use super::ast::Span;
-use super::foreign::FreshNames;
-use super::number::{is_unit, split_unit};
-use super::scan::Tokens;
-use super::token::Kind;
-use crate::lang::diag::{Diagnostic, FileId};
+use crate::lang::diag::diagnostic::{Diagnostic, FileId};
+use crate::lang::diag::span::Span;
+use crate::lang::syntax::Rule;
+use crate::lang::syntax::foreign::FreshNames;
+use crate::lang::syntax::number::{is_unit, split_unit};
+use crate::lang::syntax::scan::Tokens;
+use crate::lang::syntax::token::Kind;
 
 /// One declaration that pest refused.
-pub(super) struct Failure<'a> {
+pub(crate) struct Failure<'a> {
     pub source: &'a str,
     pub file: FileId,
     pub tokens: &'a Tokens,
@@ -58,9 +58,9 @@ impl Failure<'_> {
         let special = self.let_without_in(&stop).or_else(|| self.bracket_on_its_line(&stop)).or_else(|| self.reserved_word(&stop));
         let special = special.or_else(|| self.equals(&stop)).or_else(|| self.colon(&stop)).or_else(|| self.unit_apart(&stop));
         special.unwrap_or_else(|| {
-            let refusal = super::foreign::Refusal::new((self.source, self.tokens), self.base..self.end, at, self.fresh);
+            let refusal = crate::lang::syntax::foreign::Refusal::new((self.source, self.tokens), self.base..self.end, at, self.fresh);
             match refusal.meant() {
-                Some(meant) => super::foreign::say(self.found(&stop), Some(meant)),
+                Some(meant) => crate::lang::syntax::foreign::say(self.found(&stop), Some(meant)),
                 None => self.general(&stop),
             }
         })
@@ -100,7 +100,7 @@ impl Failure<'_> {
     fn parses_with(&self, span: Span, text: &str) -> bool {
         let whole = self.tokens.stretch(self.base, self.end - 1);
         let (before, behind) = (Span { start: whole.start, end: span.start }, Span { start: span.end, end: whole.end });
-        super::is_declaration(&format!("{}{text}{}", self.slice(before), self.slice(behind)))
+        crate::lang::syntax::is_declaration(&format!("{}{text}{}", self.slice(before), self.slice(behind)))
     }
 
     /// Adds the first repair that makes the declaration parse.
@@ -299,7 +299,7 @@ impl Failure<'_> {
         if let Some(help) = self.usual(stop) {
             // The whole declaration, where nothing is left to be filled in.
             let whole = self.tokens.stretch(self.base, self.end - 1);
-            let typed = super::is_declaration(&help);
+            let typed = crate::lang::syntax::is_declaration(&help);
             return if typed { report.help(help.clone()).put(whole, help) } else { report.help(help) };
         }
         let before = if stop.at > self.base { self.text(stop.at - 1) } else { "" };

@@ -3,26 +3,15 @@
 //! An edit is told where the help is made, by what it means ([`Edit`]); here it becomes bytes. Only tokens are looked
 //! at, so that a script with mistakes elsewhere can be mended as well.
 
-use super::ast::Span;
-use super::scan::{Tokens, scan};
-use super::split::{Piece, split};
-use super::token::Kind;
 use crate::base::fault::Edit;
-use crate::lang::diag::FileId;
+use crate::lang::diag::diagnostic::Fix;
+use crate::lang::diag::span::Span;
+use crate::lang::syntax::scan::{Tokens, scan};
+use crate::lang::syntax::split::{Piece, split};
+use crate::lang::syntax::token::Kind;
 
 /// Most characters of a text in a title.
 const SHOWN: usize = 40;
-
-/// An edit at a place.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Fix {
-    /// The file.
-    pub file: FileId,
-    /// The subject of the edit.
-    pub span: Span,
-    /// What is done.
-    pub edit: Edit,
-}
 
 /// A fix as it is offered: what it does in words, the stretch that goes and the text that comes.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -3,8 +3,8 @@
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
 
-use super::ast::{Declaration, DeclarationKind, ExprId};
-use super::*;
+use crate::lang::syntax::ast::{Declaration, DeclarationKind, ExprId};
+use crate::lang::syntax::*;
 
 const TOUR: &str = include_str!("../../../tests/data/tour.loft");
 
@@ -226,9 +226,9 @@ fn check(text: &str) -> Result<(), TestCaseError> {
     the_grammar_agrees(text, &script, &found);
     tokens_match_as_characters(text, &script);
     shapes_change_nothing(text, &script, &mut names);
-    let mut sources = crate::lang::diag::Sources::default();
+    let mut sources = crate::lang::diag::diagnostic::Sources::default();
     sources.add("fuzz.loft", text);
-    crate::lang::diag_render::render_all(&found, &sources, true);
+    crate::lang::diag::render::render_all(&found, &sources, true);
     Ok(())
 }
 

@@ -1,7 +1,7 @@
 //! The reserved words: what each is, how it is written, and what it means. Scanner, messages and reference read this table.
 
-use super::ast::Keyword;
-use super::token::Kind;
+use crate::lang::syntax::ast::Keyword;
+use crate::lang::syntax::token::Kind;
 
 /// A reserved word.
 #[derive(Debug)]

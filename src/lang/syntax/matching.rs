@@ -1,10 +1,10 @@
 //! Matching the tokens of a declaration against the rules of [`super::peg`].
 
-use super::Rule;
-use super::ast::Span;
-use super::peg::{Op, RULES, TokenRule, bit};
-use super::scan::Tokens;
-use super::token::Kind;
+use crate::lang::diag::span::Span;
+use crate::lang::syntax::Rule;
+use crate::lang::syntax::peg::{Op, RULES, TokenRule, bit};
+use crate::lang::syntax::scan::Tokens;
+use crate::lang::syntax::token::Kind;
 
 /// A rule that matched.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,11 +19,11 @@ struct Mark {
 
 /// All that matched, each rule before what is inside it; kept between declarations for its room.
 #[derive(Debug, Default)]
-pub(super) struct Marks(Vec<Mark>);
+pub(crate) struct Marks(Vec<Mark>);
 
 /// A rule that matched, with what matched inside it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Pair<'m> {
+pub(crate) struct Pair<'m> {
     marks: &'m [Mark],
 }
 

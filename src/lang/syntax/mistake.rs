@@ -1,11 +1,12 @@
 //! What is wrong with tokens, brackets and lines, in words.
 
-use super::ast::Span;
-use super::keywords::{KeywordDoc, openers};
-use super::number::{self, Fault};
 use crate::base::limits::SOURCE_BYTES;
-use crate::lang::diag::{Diagnostic, FileId};
-use crate::lang::names::nearest;
+use crate::lang::diag::diagnostic::{Diagnostic, FileId};
+use crate::lang::diag::span::Span;
+use crate::lang::syntax::keywords::{KeywordDoc, openers};
+use crate::lang::syntax::number;
+use crate::lang::syntax::number::Fault;
+use crate::lang::words::names::nearest;
 
 /// One mistake of the text, found before parsing.
 #[derive(Clone, Debug, PartialEq)]
@@ -165,7 +166,7 @@ impl Mistake {
                     None => report.label(file, Span { start: last.end, end: last.end }, "the script ends here"),
                 };
                 let (before, behind) = (Span { start: piece.start, end: last.end }, Span { start: last.end, end: piece.end });
-                let works = super::is_declaration(&format!("{}{closers}{}", text(before), text(behind)));
+                let works = crate::lang::syntax::is_declaration(&format!("{}{closers}{}", text(before), text(behind)));
                 let report = report.put(Span { start: last.end, end: last.end }, closers.as_str());
                 report.help(if works { format!("add `{closers}` after `{}`", text(*last)) } else { format!("close it with `{closers}`") })
             }

@@ -8,21 +8,22 @@
 //! ones are listed so that what uses them can be skipped without a second message.
 
 pub mod ast;
-mod climb;
-mod expected;
+pub mod climb;
+pub mod expected;
 pub mod fixes;
-pub(in crate::lang) mod foreign;
+pub mod foreign;
 pub mod keywords;
-mod matching;
-mod mistake;
+pub mod matching;
+pub mod mistake;
 pub mod number;
 pub mod outline;
-mod peg;
-mod scan;
-mod shape;
-mod split;
-mod token;
-mod tree;
+pub mod peg;
+pub mod scan;
+pub mod scopes;
+pub mod shape;
+pub mod split;
+pub mod token;
+pub mod tree;
 
 use std::ops::Range;
 use std::rc::Rc;
@@ -30,16 +31,17 @@ use std::rc::Rc;
 use pest::Parser as _;
 
 use crate::base::limits::SOURCE_BYTES;
-use crate::lang::diag::{Diagnostic, FileId};
-use crate::lang::names::Names;
-use ast::{Bound, Script, Span};
-use matching::Marks;
-use mistake::Mistake;
-pub(crate) use scan::{Tokens, scan};
-use shape::{Filler, Shape, Shapes};
-use split::Piece;
-pub(crate) use split::split;
-pub(crate) use token::Kind;
+use crate::lang::diag::diagnostic::{Diagnostic, FileId};
+use crate::lang::diag::span::Span;
+use crate::lang::syntax::ast::{Bound, Script};
+use crate::lang::syntax::matching::Marks;
+use crate::lang::syntax::mistake::Mistake;
+pub(crate) use crate::lang::syntax::scan::{Tokens, scan};
+use crate::lang::syntax::shape::{Filler, Shape, Shapes};
+use crate::lang::syntax::split::Piece;
+pub(crate) use crate::lang::syntax::split::split;
+pub(crate) use crate::lang::syntax::token::Kind;
+use crate::lang::words::names::Names;
 
 /// What pest makes of `grammar/loft.pest`.
 #[allow(missing_docs)]

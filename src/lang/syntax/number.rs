@@ -197,5 +197,5 @@ pub(crate) fn meant(unit: &str) -> Option<String> {
     }
     let powers = LENGTHS.iter().flat_map(|l| ["", "2", "3"].map(|p| format!("{l}{p}")));
     let all: Vec<String> = powers.chain(ANGLES.iter().chain(&MASSES).map(|u| (*u).to_owned())).collect();
-    crate::lang::names::nearest(&lower, all.iter().map(String::as_str)).map(str::to_owned)
+    crate::lang::words::names::nearest(&lower, all.iter().map(String::as_str)).map(str::to_owned)
 }

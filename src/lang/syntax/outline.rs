@@ -3,11 +3,12 @@
 
 use std::ops::Range;
 
-use super::ast::{Keyword, Span};
-use super::mistake::Mistake;
-use super::scan::{Tokens, scan};
-use super::split::split;
-use super::token::Kind;
+use crate::lang::diag::span::Span;
+use crate::lang::syntax::ast::Keyword;
+use crate::lang::syntax::mistake::Mistake;
+use crate::lang::syntax::scan::{Tokens, scan};
+use crate::lang::syntax::split::split;
+use crate::lang::syntax::token::Kind;
 
 /// One declaration as text.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -30,7 +31,7 @@ pub fn outline(source: &str) -> Vec<Outline> {
     let (pieces, _) = split(&tokens);
     let mut from = 0;
     let last = pieces.len().wrapping_sub(1);
-    let entry = |(k, piece): (usize, super::split::Piece)| {
+    let entry = |(k, piece): (usize, crate::lang::syntax::split::Piece)| {
         let span = tokens.stretch(piece.tokens.start, piece.tokens.end - 1);
         let end = if k == last { source.len() as u32 } else { line_end(source, span.end, tokens.starts.get(piece.tokens.end).copied()) };
         let whole = Span { start: from, end };

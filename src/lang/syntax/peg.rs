@@ -8,16 +8,16 @@
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
-use super::Rule;
-use super::scan::scan;
-use super::token::Kind;
+use crate::lang::syntax::Rule;
+use crate::lang::syntax::scan::scan;
+use crate::lang::syntax::token::Kind;
 
 /// The file that pest reads too.
 const GRAMMAR: &str = include_str!("../../../grammar/loft.pest");
 
 /// One step of matching.
 #[derive(Clone, Debug)]
-pub(super) enum Op {
+pub(crate) enum Op {
     /// A token of one of these kinds, a bit each.
     Kinds(u128),
     /// A string, which is one token or several with values between them; the number is that of `expr`.
@@ -41,7 +41,7 @@ pub(super) enum Op {
 
 /// A rule over tokens.
 #[derive(Clone, Debug)]
-pub(super) struct TokenRule {
+pub(crate) struct TokenRule {
     /// What is told of it; `None` when nothing is.
     pub told: Option<Rule>,
     /// What matches inside it is not told.
@@ -53,7 +53,7 @@ pub(super) struct TokenRule {
 const UNTOLD: &[&str] = &["comma", "colon", "eq", "dot", "lpar", "rpar", "rbracket", "lbrace", "rbrace", "single", "EOI"];
 
 /// All rules that a declaration may need, the first of them `single`; `None` when the file holds what is not known here.
-pub(super) static RULES: LazyLock<Option<Vec<TokenRule>>> = LazyLock::new(|| {
+pub(crate) static RULES: LazyLock<Option<Vec<TokenRule>>> = LazyLock::new(|| {
     let rules = Reader { rest: GRAMMAR }.rules()?;
     let told = Rule::all_rules().iter().map(|rule| (format!("{rule:?}"), *rule)).collect();
     let mut compiler = Compiler { rules, told, numbers: BTreeMap::new(), out: Vec::new() };
@@ -62,7 +62,7 @@ pub(super) static RULES: LazyLock<Option<Vec<TokenRule>>> = LazyLock::new(|| {
 });
 
 /// The bit of a kind.
-pub(super) const fn bit(kind: Kind) -> u128 {
+pub(crate) const fn bit(kind: Kind) -> u128 {
     1 << kind as u8
 }
 

@@ -6,11 +6,11 @@
 
 use unicode_ident::{is_xid_continue, is_xid_start};
 
-use super::ast::Span;
-use super::mistake::Mistake;
-use super::number;
-use super::token::{Kind, kind_of_word};
 use crate::base::limits::NESTED_BRACKETS;
+use crate::lang::diag::span::Span;
+use crate::lang::syntax::mistake::Mistake;
+use crate::lang::syntax::number;
+use crate::lang::syntax::token::{Kind, kind_of_word};
 
 /// The tokens of a file.
 #[derive(Debug, Default)]

@@ -4,14 +4,15 @@
 //! kinds; a declaration of a known shape takes the tree from before and its own numbers, names and places. There is
 //! no second way: also the first declaration of a shape is made from it.
 
+use crate::lang::diag::span::Span;
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use super::ast::*;
-use super::number;
-use super::scan::Tokens;
-use super::token::Kind;
-use crate::lang::names::{Name, Names};
+use crate::lang::syntax::ast::*;
+use crate::lang::syntax::number;
+use crate::lang::syntax::scan::Tokens;
+use crate::lang::syntax::token::Kind;
+use crate::lang::words::names::{Name, Names};
 
 /// A declaration whose spans hold the numbers of their first and last token instead of bytes, and whose names are the
 /// numbers of the tokens that hold them. Numbers and strings are empty; they are read from the tokens.

@@ -5,11 +5,11 @@
 
 use std::ops::Range;
 
-use super::ast::Span;
-use super::mistake::Mistake;
-use super::scan::Tokens;
-use super::token::Kind;
 use crate::base::limits::{EXPRESSION_HEIGHT, NESTED_BRACKETS, OPERATORS_IN_A_ROW};
+use crate::lang::diag::span::Span;
+use crate::lang::syntax::mistake::Mistake;
+use crate::lang::syntax::scan::Tokens;
+use crate::lang::syntax::token::Kind;
 
 /// The tokens of one declaration, or of something that begins like none.
 #[derive(Debug)]

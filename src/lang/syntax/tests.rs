@@ -1,5 +1,5 @@
-use super::ast::{Declaration, DeclarationKind, Expr, ExprId, Keyword, TextPart};
-use super::*;
+use crate::lang::syntax::ast::{Declaration, DeclarationKind, Expr, ExprId, Keyword, TextPart};
+use crate::lang::syntax::*;
 
 fn parsed(source: &str) -> (Script, Vec<Diagnostic>, Names) {
     let mut names = Names::default();
@@ -11,7 +11,7 @@ fn parsed(source: &str) -> (Script, Vec<Diagnostic>, Names) {
 fn shown(declaration: &Declaration, id: ExprId, names: &Names) -> String {
     let show = |id: ExprId| shown(declaration, id, names);
     let all = |ids: &[ExprId]| ids.iter().map(|&i| show(i)).collect::<Vec<_>>().join(" ");
-    let args = |args: &[super::ast::Arg]| {
+    let args = |args: &[crate::lang::syntax::ast::Arg]| {
         args.iter()
             .map(|a| a.name.map_or(String::new(), |(n, _)| format!("{}:", names.text(n))) + &show(a.value))
             .collect::<Vec<_>>()
@@ -40,9 +40,9 @@ fn shown(declaration: &Declaration, id: ExprId, names: &Names) -> String {
         Expr::Tuple(items) => format!("(, {})", all(items)),
         Expr::List(items) => format!("[{}]", all(items)),
         Expr::Comprehension { clauses, body } => {
-            let clause = |c: &super::ast::Clause| match c {
-                super::ast::Clause::For(f) => format!("for {} in {}", names.text(f.name), show(f.list)),
-                super::ast::Clause::If(c) => format!("if {}", show(*c)),
+            let clause = |c: &crate::lang::syntax::ast::Clause| match c {
+                crate::lang::syntax::ast::Clause::For(f) => format!("for {} in {}", names.text(f.name), show(f.list)),
+                crate::lang::syntax::ast::Clause::If(c) => format!("if {}", show(*c)),
             };
             format!("[{}: {}]", clauses.iter().map(clause).collect::<Vec<_>>().join(" "), show(*body))
         }

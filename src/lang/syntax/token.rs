@@ -1,7 +1,7 @@
 //! Kinds of tokens.
 
-use super::ast::Keyword;
-use super::keywords::WORDS;
+use crate::lang::syntax::ast::Keyword;
+use crate::lang::syntax::keywords::WORDS;
 
 /// What a token is. A declaration's tree follows from the kinds of its tokens alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -93,7 +93,7 @@ pub(crate) fn kind_of_word(word: &str) -> Kind {
     if !(2..=9).contains(&word.len()) || !word.as_bytes()[0].is_ascii_lowercase() {
         return Kind::Name;
     }
-    super::keywords::find(word).map_or(Kind::Name, |w| w.kind)
+    crate::lang::syntax::keywords::find(word).map_or(Kind::Name, |w| w.kind)
 }
 
 impl Kind {

@@ -1,19 +1,20 @@
 //! What matched to a [`Shape`].
 
-use super::Rule;
-use super::ast::*;
-use super::climb::{Climber, Term};
-use super::matching::Pair;
-use super::mistake::Refused;
-use super::scan::Tokens;
-use super::shape::Shape;
-use super::token::Kind;
-use crate::lang::names::Name;
+use crate::lang::diag::span::Span;
+use crate::lang::syntax::Rule;
+use crate::lang::syntax::ast::*;
+use crate::lang::syntax::climb::{Climber, Term};
+use crate::lang::syntax::matching::Pair;
+use crate::lang::syntax::mistake::Refused;
+use crate::lang::syntax::scan::Tokens;
+use crate::lang::syntax::shape::Shape;
+use crate::lang::syntax::token::Kind;
+use crate::lang::words::names::Name;
 
-pub(super) type Result<T> = std::result::Result<T, Refused>;
+pub(crate) type Result<T> = std::result::Result<T, Refused>;
 
 /// Builds the shape of one declaration.
-pub(super) struct Builder<'a> {
+pub(crate) struct Builder<'a> {
     tokens: &'a Tokens,
     base: usize,
     pub nodes: Vec<Node>,
@@ -21,7 +22,7 @@ pub(super) struct Builder<'a> {
 }
 
 /// The shape of the declaration in tokens `base..end`, from the rule that matched it.
-pub(super) fn build(declaration: Pair<'_>, tokens: &Tokens, base: usize, end: usize) -> Result<Shape> {
+pub(crate) fn build(declaration: Pair<'_>, tokens: &Tokens, base: usize, end: usize) -> Result<Shape> {
     let mut builder = Builder { tokens, base, nodes: Vec::new(), stretches: Vec::new() };
     let kind = builder.declaration(declaration)?;
     let keyword = tokens.kinds[base].keyword().ok_or_else(|| Refused::whole("no keyword", 0, 0))?;

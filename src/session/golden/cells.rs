@@ -7,7 +7,7 @@ use super::words::Measure;
 /// How many times the allowed change lies between two numbers of a measure; `None` when they are equal enough.
 type Apart<'a> = &'a dyn Fn(Measure, f64, f64) -> Option<f64>;
 use crate::base::digest::StableHasher;
-use crate::lang::units::length_unit;
+use crate::lang::values::units::length_unit;
 use crate::session::report::Cell;
 
 /// One cell.

@@ -10,7 +10,7 @@ use super::geometry::{self, Shape};
 use super::tokens;
 use crate::base::limits;
 use crate::io::FileError;
-use crate::lang::units::{convert, length_unit};
+use crate::lang::values::units::{convert, length_unit};
 use crate::session::disk::read_limited;
 use crate::session::report::OutputRow;
 use crate::session::staging::Staging;

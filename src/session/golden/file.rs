@@ -1,6 +1,6 @@
 //! The golden file: read with a place for everything that is wrong, and written again with its head and comments.
 
-use crate::lang::units::LengthUnit;
+use crate::lang::values::units::LengthUnit;
 
 use super::line::{Line, parse_line};
 use super::quotes::{end_of_quote, unquoted};
@@ -407,7 +407,8 @@ fn compare(rest: &str) -> Result<Compare, String> {
     let end = end_of_quote(rest).filter(|_| rest.starts_with('"')).ok_or_else(wanted)?;
     let file = unquoted(&rest[..end]).map_err(|_| wanted())?;
     let amount = rest[end..].trim_start().strip_prefix("within").ok_or_else(wanted)?.trim();
-    let (number, unit) = match crate::lang::units::LENGTHS.iter().filter(|u| amount.ends_with(u.name)).max_by_key(|u| u.name.len()) {
+    let (number, unit) = match crate::lang::values::units::LENGTHS.iter().filter(|u| amount.ends_with(u.name)).max_by_key(|u| u.name.len())
+    {
         Some(unit) => (amount[..amount.len() - unit.name.len()].trim(), Some(*unit)),
         None => (amount, None),
     };

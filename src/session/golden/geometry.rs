@@ -11,7 +11,7 @@ use crate::base::bbox::Box3;
 use crate::base::boxtree::BoxTree;
 use crate::base::fault::Malformed;
 use crate::base::job;
-use crate::io::{obj_read, stl_read};
+use crate::io::mesh_files::{obj_read, stl_read};
 use crate::mesh::Mesh;
 
 /// Digits of a place.

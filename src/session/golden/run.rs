@@ -18,7 +18,7 @@ use super::tell::{self, Said};
 use crate::base::job::Job;
 use crate::base::limits;
 use crate::io::FileError;
-use crate::lang::cx::Cx;
+use crate::lang::eval::context::Cx;
 use crate::session::disk::{Disk, Outputs, read_limited};
 use crate::session::guard::guarded;
 use crate::session::kept::Kept;

@@ -12,7 +12,7 @@ use super::quote;
 use super::values::Value;
 use super::words::{Kind, Measure, fields_of, unit_of};
 use crate::base::tolerance::ROUNDING_SHARE;
-use crate::lang::diag::{Diagnostic, FileId, Sources};
+use crate::lang::diag::diagnostic::{Diagnostic, FileId, Sources};
 use crate::session::report::{Cell, Column, Corners, CurveRow, MeshRow, ModelingRow, Report, ShellRow, SurfaceRow, Table};
 use crate::session::run::Outcome;
 

@@ -58,7 +58,7 @@ pub fn differs(old: &str, new: &str, within: f64, fields: bool) -> Option<String
 
 fn line_differs(old: &[Token], new: &[Token], within: f64) -> Option<String> {
     let show = |token: Option<&Token>| match token {
-        Some(Token::Real(x)) => crate::lang::units::number_text(*x),
+        Some(Token::Real(x)) => crate::lang::values::units::number_text(*x),
         Some(Token::Text(text)) => format!("`{}`", text.chars().take(40).collect::<String>()),
         None => "nothing".to_owned(),
     };

@@ -3,7 +3,7 @@
 use super::cells::{self, Entry};
 use super::quotes::{end_of_quote, label, phrase, unquoted};
 use super::words::{Kind, Measure};
-use crate::lang::units::{length_unit, number_text};
+use crate::lang::values::units::{length_unit, number_text};
 
 /// What stands behind a word of a line.
 #[derive(Clone, Debug, PartialEq)]

@@ -5,8 +5,8 @@ use std::path::Path;
 use super::{Answer, Notebook, Part, State, bug_answer, ended, stopped, summary};
 use crate::base::limits;
 use crate::draw::View;
-use crate::lang::plans::PictureSpec;
-use crate::lang::symbols::Condition;
+use crate::lang::run::symbols::Condition;
+use crate::lang::values::plans::PictureSpec;
 use crate::session::disk::{read_limited, write_whole};
 use crate::session::live::Depth;
 use crate::session::lookup;
@@ -72,7 +72,7 @@ impl Notebook {
         let text = text.trim();
         let (word, rest) = text.split_once(char::is_whitespace).map_or((text, ""), |(word, rest)| (word, rest.trim()));
         let Some(command) = COMMANDS.iter().find(|c| c.word == word) else {
-            let near = crate::lang::names::nearest(word, COMMANDS.iter().map(|c| c.word));
+            let near = crate::lang::words::names::nearest(word, COMMANDS.iter().map(|c| c.word));
             let hint = near.map_or_else(String::new, |near| format!("; did you mean `:{near}`?"));
             return Answer::failure(format!("there is no command `:{word}`{hint} (`:help` lists all)"));
         };

@@ -2,15 +2,16 @@
 
 use super::{ANSWER, Answer, ENTRY, Notebook, Part, State, ended};
 use crate::base::fault::Severity;
-use crate::lang::cx::Cx;
-use crate::lang::diag::{Diagnostic, FileId, Sources};
-use crate::lang::diag_render::render_all;
-use crate::lang::names::Names;
-use crate::lang::plans::ReportTable;
-use crate::lang::symbols::{Condition, Symbol};
-use crate::lang::syntax::ast::{Keyword, Span};
+use crate::lang::diag::diagnostic::{Diagnostic, FileId, Sources};
+use crate::lang::diag::render::render_all;
+use crate::lang::diag::span::Span;
+use crate::lang::eval::context::Cx;
+use crate::lang::run::symbols::{Condition, Symbol};
+use crate::lang::syntax::ast::Keyword;
 use crate::lang::syntax::outline::{Outline, outline};
 use crate::lang::syntax::parse;
+use crate::lang::values::plans::ReportTable;
+use crate::lang::words::names::Names;
 use crate::session::collect;
 use crate::session::live::Depth;
 use crate::session::report::Table;

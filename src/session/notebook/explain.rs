@@ -1,8 +1,8 @@
 //! How a name of the model came about: its statement, what it stands on, how it was ordered, counted and meshed.
 
 use super::{Answer, Notebook, Part};
-use crate::lang::cx::{Cx, Sound};
-use crate::lang::value::{ModuleId, Value};
+use crate::lang::eval::context::{Cx, Sound};
+use crate::lang::values::value::{ModuleId, Value};
 use crate::network::Network;
 use crate::session::live::Depth;
 
@@ -42,7 +42,7 @@ impl Notebook {
         outcome.notes.iter().filter(speaks).for_each(|note| answer.say(note.clone()));
         let why = self.why(what);
         answer.parts.extend(why.parts);
-        answer.failed = symbol.condition != crate::lang::symbols::Condition::Sound;
+        answer.failed = symbol.condition != crate::lang::run::symbols::Condition::Sound;
         if answer.failed {
             answer.parts.push(Part::Said(outcome.drawn(self.color, false)));
         }
@@ -82,7 +82,7 @@ fn of_mesh(note: &str, what: &str) -> bool {
 /// What the network knows of a value.
 fn about(cx: &mut Cx<'_>, value: &Value, out: &mut Vec<String>) {
     if let Some(part) = value.part() {
-        return out.extend(part.told(cx));
+        return out.extend(part.summary(cx.unit().name));
     }
     let Ok(Sound { network, .. }) = cx.sound(ModuleId::MAIN) else { return };
     let Some(tolerance) = cx.tolerance_used() else { return };
@@ -92,7 +92,7 @@ fn about(cx: &mut Cx<'_>, value: &Value, out: &mut Vec<String>) {
                 let link = &network.links[id.index()];
                 let (a, b) = if against { (link.nodes.1, link.nodes.0) } else { link.nodes };
                 let place = |n: crate::network::NodeId| cx.show(&Value::Node(network.nodes[n.index()].point));
-                let length = cx.measured(link.s.1 - link.s.0, crate::lang::value::Dim::LENGTH);
+                let length = cx.measured(link.s.1 - link.s.0, crate::lang::values::value::Dim::LENGTH);
                 let owner = &network.curves[link.curve.index()].name;
                 let (from, to) = (place(a), place(b));
                 out.push(format!("  link {} of {owner}, {length}: node {} {from} to node {} {to}", id.0 + 1, a.0 + 1, b.0 + 1));

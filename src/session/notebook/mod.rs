@@ -20,10 +20,10 @@ use super::report::{Report, Table};
 use super::run::Outcome;
 use crate::base::fault::Severity;
 use crate::base::job::Job;
-use crate::lang::cx::Cx;
-use crate::lang::diag::Diagnostic;
-use crate::lang::diag_render::render_all;
-use crate::lang::symbols::{Condition, Symbol};
+use crate::lang::diag::diagnostic::Diagnostic;
+use crate::lang::diag::render::render_all;
+use crate::lang::eval::context::Cx;
+use crate::lang::run::symbols::{Condition, Symbol};
 use crate::lang::syntax::outline::{is_unfinished, outline};
 
 pub use commands::{COMMANDS, Command};

@@ -2,10 +2,10 @@
 
 use super::edit::shown_table;
 use super::{Answer, Notebook, Part, ended};
-use crate::lang::symbols::{Condition, Symbol, about_mesh};
+use crate::lang::run::symbols::{Condition, Symbol, about_mesh};
 use crate::lang::syntax::ast::{DeclarationKind, Keyword};
 use crate::lang::syntax::parse;
-use crate::lang::value::Value;
+use crate::lang::values::value::Value;
 use crate::session::live::Depth;
 
 impl Notebook {
@@ -16,7 +16,7 @@ impl Notebook {
             Some(found) => Ok(found),
             None => {
                 let names = self.now.symbols.iter().filter_map(|s| s.name.as_deref());
-                let near = crate::lang::names::nearest(name, names);
+                let near = crate::lang::words::names::nearest(name, names);
                 let hint = near.map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
                 Err(Answer::failure(format!("`{name}` is not defined{hint}")))
             }
@@ -206,8 +206,8 @@ impl Notebook {
     pub(super) fn saved_text(&self) -> String {
         let mut text = ended(&self.now.state.text);
         for (name, value) in &self.now.state.sets {
-            let mut names = crate::lang::names::Names::default();
-            let (script, _) = parse(&text, crate::lang::diag::FileId(0), &mut names);
+            let mut names = crate::lang::words::names::Names::default();
+            let (script, _) = parse(&text, crate::lang::diag::diagnostic::FileId(0), &mut names);
             let param = script.declarations.iter().filter(|d| d.keyword == Keyword::Param).find_map(|d| match &d.kind {
                 DeclarationKind::Param { bound, value, .. } if names.text(bound.name) == name => Some(d.nodes.get(value.index())?.span),
                 _ => None,

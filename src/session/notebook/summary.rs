@@ -9,7 +9,7 @@ const SHOWN: usize = 40;
 /// The declarations of a text: what they are called by, and how they read.
 fn declarations(text: &str) -> Vec<(Option<String>, String)> {
     let of = |o: &Outline| {
-        let at = |s: crate::lang::syntax::ast::Span| text[s.start as usize..s.end as usize].to_owned();
+        let at = |s: crate::lang::diag::span::Span| text[s.start as usize..s.end as usize].to_owned();
         (o.name.map(at), at(o.span))
     };
     outline(text).iter().map(of).collect()

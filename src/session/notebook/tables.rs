@@ -4,8 +4,8 @@ use glam::DVec3;
 
 use super::{Answer, Notebook, Part};
 use crate::base::tolerance::Tolerance;
-use crate::lang::cx::{Cx, Parts};
-use crate::lang::value::{ModuleId, Value};
+use crate::lang::eval::context::{Cx, Parts};
+use crate::lang::values::value::{ModuleId, Value};
 use crate::network::{LinkId, Network};
 use crate::session::collect;
 use crate::session::live::Depth;

@@ -2,13 +2,13 @@
 
 use glam::DVec3;
 
-use super::Maker;
 use crate::base::tolerance::{EPSILON, PARALLEL};
 use crate::geometry::arc::EllipticArc;
 use crate::geometry::curve::Shape;
 use crate::geometry::{Curve, Nurbs};
 use crate::io::cad::damage::Damage;
-use crate::io::iges::sheet::{Role, Values};
+use crate::io::iges::entity_writer::{Role, Values};
+use crate::io::iges::write::maker::Maker;
 
 impl Maker<'_> {
     /// A curve in space, scaled; or in (u, v), as it is.

@@ -9,16 +9,16 @@ use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3};
 
-use super::Maker;
 use crate::base::job;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::{Closest, Curve, closest};
 use crate::io::cad::bodies::{Bodies, Faces};
+use crate::io::cad::control_nets::{NetBorder, borders};
 use crate::io::cad::damage::{Damage, damage};
-use crate::io::cad::ground::Ground;
-use crate::io::cad::nets::{NetBorder, borders};
-use crate::io::iges::sheet::{Role, Values};
-use crate::io::iges::write::Thing;
+use crate::io::cad::elementary_surface::Ground;
+use crate::io::iges::entity_writer::{Role, Values};
+use crate::io::iges::write::maker::Maker;
+use crate::io::iges::write::things::Thing;
 use crate::model::body::BodyLoop;
 
 /// Places along an edge that are compared with a border of a net.

@@ -1,10 +1,10 @@
 //! Surfaces as IGES entities: B-splines, and planes, cylinders, cones, spheres and tori of solids.
 
-use super::Maker;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::nurbs::projected;
-use crate::io::cad::ground::Ground;
-use crate::io::iges::sheet::{Role, Values};
+use crate::io::cad::elementary_surface::Ground;
+use crate::io::iges::entity_writer::{Role, Values};
+use crate::io::iges::write::maker::Maker;
 use crate::surface::analysis::elementary::{Elementary, Form};
 use crate::surface::{NetForm, NurbsSurface, Off};
 

@@ -4,16 +4,16 @@ use std::sync::Arc;
 
 use glam::{BVec3, DAffine3, DMat3, DVec3};
 
-use super::Maker;
 use crate::base::bbox::Box3;
 use crate::base::tolerance::NUDGE;
 use crate::geometry::curve::Shape;
 use crate::geometry::{Curve, Kind, build};
-use crate::io::cad::base::Base;
-use crate::io::cad::carry::carried;
-use crate::io::cad::compose::{composed, fitted};
+use crate::io::cad::base_surface::Base;
+use crate::io::cad::curve_on_surface::{composed, fitted};
+use crate::io::cad::curves::transformed;
 use crate::io::cad::damage::{Damage, damage};
-use crate::io::iges::sheet::{Role, Values};
+use crate::io::iges::entity_writer::{Role, Values};
+use crate::io::iges::write::maker::Maker;
 use crate::surface::{Domain, NurbsSurface, Side, Surface};
 
 impl Maker<'_> {
@@ -68,7 +68,7 @@ impl Maker<'_> {
         }
         if by.x != 0.0 || by.y != 0.0 {
             let m = DAffine3::from_translation(DVec3::new(by.x, by.y, 0.0));
-            loop_of = loop_of.iter().map(|c| carried(c, &m, &self.scale.tolerance)).collect::<Result<_, Damage>>()?;
+            loop_of = loop_of.iter().map(|c| transformed(c, &m, &self.scale.tolerance)).collect::<Result<_, Damage>>()?;
         }
         Ok(loop_of)
     }
@@ -110,7 +110,7 @@ impl Maker<'_> {
         if surface.is_flat() {
             let jet = surface.jet(0.0, 0.0);
             let frame = DAffine3::from_mat3_translation(DMat3::from_cols(jet.du, jet.dv, jet.du.cross(jet.dv)), jet.p);
-            return Ok((carried(&part, &frame.inverse(), tolerance)?, Some(part)));
+            return Ok((transformed(&part, &frame.inverse(), tolerance)?, Some(part)));
         }
         let length = part.length();
         let place = |t: f64| {

@@ -2,21 +2,12 @@
 
 use glam::DVec3;
 
-use super::text::{Id, Records, Values};
 use crate::base::fault::Result;
-use crate::base::tolerance::Tolerance;
 use crate::geometry::arc::EllipticArc;
 use crate::geometry::curve::Shape;
 use crate::geometry::{Curve, Nurbs};
-
-/// How lengths go into the file.
-#[derive(Clone, Copy, Debug)]
-pub struct Scale {
-    /// Model units in one unit of the file.
-    pub model: f64,
-    /// Of the model: what is no B-spline is within it.
-    pub tolerance: Tolerance,
-}
+use crate::io::step::write::records::{Id, Records, Values};
+use crate::io::step::write::things::Scale;
 
 /// The geometry of an edge: without ends where it is a line or a circle.
 #[derive(Debug)]

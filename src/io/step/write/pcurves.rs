@@ -7,12 +7,13 @@ use std::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
 
-use super::curves::{Along, Scale, spline_of};
-use super::text::{Id, Records};
 use crate::base::math;
 use crate::base::tolerance::{NUDGE, POLE_STEP, Tolerance};
 use crate::geometry::Nurbs;
-use crate::io::cad::compose::fitted;
+use crate::io::cad::curve_on_surface::fitted;
+use crate::io::step::write::curves::{Along, spline_of};
+use crate::io::step::write::records::{Id, Records};
+use crate::io::step::write::things::Scale;
 use crate::surface::analysis::elementary::{Elementary, Form};
 
 /// Pieces of a smooth stretch of an edge to begin with, each of which gets a spline of its own.

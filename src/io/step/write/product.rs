@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::text::{Id, Records, Values};
 use crate::geometry::Motion;
+use crate::io::step::write::records::{Id, Records, Values};
 
 /// An application protocol.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

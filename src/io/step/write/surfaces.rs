@@ -2,10 +2,11 @@
 
 use glam::DVec3;
 
-use super::curves::{Scale, knots};
-use super::text::{Id, Records, Values};
 use crate::geometry::nurbs::projected;
-use crate::io::cad::ground::Ground;
+use crate::io::cad::elementary_surface::Ground;
+use crate::io::step::write::curves::knots;
+use crate::io::step::write::records::{Id, Records, Values};
+use crate::io::step::write::things::Scale;
 use crate::surface::NurbsSurface;
 use crate::surface::analysis::elementary::{Elementary, Form};
 

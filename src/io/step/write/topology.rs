@@ -8,14 +8,15 @@
 
 use std::collections::BTreeSet;
 
-use super::curves::{Along, Scale};
-use super::looks::Painted;
-use super::text::{Id, Records};
-use super::{pcurves, surfaces};
 use crate::base::job;
 use crate::io::cad::bodies::{Bodies, Faces, numbered};
 use crate::io::cad::damage::{Damage, damage};
-use crate::io::cad::ground::Ground;
+use crate::io::cad::elementary_surface::Ground;
+use crate::io::step::write::curves::Along;
+use crate::io::step::write::records::{Id, Records};
+use crate::io::step::write::styles::Painted;
+use crate::io::step::write::things::Scale;
+use crate::io::step::write::{pcurves, surfaces};
 
 /// What became of faces.
 #[derive(Debug, Default)]

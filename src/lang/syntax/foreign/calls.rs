@@ -1,11 +1,11 @@
 //! Calls as other tools write them: `translate([1, 2, 3]) cube(10)`, `cq.Workplane("XY").box(1, 2, 3)`.
 
-use super::{Refusal, opens};
+use crate::lang::syntax::foreign::{Refusal, opens};
 use crate::lang::syntax::token::Kind;
 
 /// One call, with the text of its arguments.
 #[derive(Clone, Debug, Default)]
-pub(in crate::lang) struct Call {
+pub(crate) struct Call {
     /// The word before the bracket.
     pub name: String,
     /// Name, where there is one, and value of each argument.
@@ -37,7 +37,7 @@ impl Call {
 
 impl Refusal<'_> {
     /// The calls of a statement from a token on, in the order of writing, and the token behind them.
-    pub(super) fn calls(&self, from: usize) -> Option<(Vec<Call>, usize)> {
+    pub(crate) fn calls(&self, from: usize) -> Option<(Vec<Call>, usize)> {
         let (mut calls, mut at) = (Vec::new(), from);
         loop {
             while self.is_word(at) && self.kind(at + 1) == Some(Kind::Dot) {
@@ -59,7 +59,7 @@ impl Refusal<'_> {
     }
 
     /// The same where nothing stands between them and `end`.
-    pub(super) fn only_calls(&self, from: usize, end: usize) -> Option<Vec<Call>> {
+    pub(crate) fn only_calls(&self, from: usize, end: usize) -> Option<Vec<Call>> {
         self.calls(from).filter(|(_, behind)| *behind == end).map(|(calls, _)| calls)
     }
 
@@ -68,7 +68,7 @@ impl Refusal<'_> {
     }
 
     /// What stands between two brackets, parted by commas. Names behind a `$` set how round a shape is drawn: curves are exact here.
-    pub(super) fn arguments(&self, open: usize, close: usize) -> Vec<(Option<String>, String)> {
+    pub(crate) fn arguments(&self, open: usize, close: usize) -> Vec<(Option<String>, String)> {
         let (mut args, mut from, mut depth) = (Vec::new(), open + 1, 0);
         for at in open + 1..=close {
             let kind = self.tokens.kinds[at];
@@ -90,7 +90,7 @@ impl Refusal<'_> {
 }
 
 /// The members of a list or tuple: `[1, 2, 3]`, `(1, 2)`; `None` for anything else.
-pub(super) fn items(text: &str) -> Option<Vec<&str>> {
+pub(crate) fn items(text: &str) -> Option<Vec<&str>> {
     let text = text.trim();
     let inner = text.strip_prefix('[').and_then(|t| t.strip_suffix(']')).or_else(|| text.strip_prefix('(')?.strip_suffix(')'))?;
     let (mut found, mut depth, mut from) = (Vec::new(), 0_i32, 0);
@@ -114,7 +114,7 @@ pub(super) fn items(text: &str) -> Option<Vec<&str>> {
 }
 
 /// A list of two or three coordinates as a point; a name as it is.
-pub(super) fn point(text: &str) -> Option<String> {
+pub(crate) fn point(text: &str) -> Option<String> {
     match items(text) {
         Some(parts) if matches!(parts.len(), 2 | 3) => Some(format!("({})", parts.join(", "))),
         Some(_) => None,
@@ -123,7 +123,7 @@ pub(super) fn point(text: &str) -> Option<String> {
 }
 
 /// A list of points, each in round brackets.
-pub(super) fn points(text: &str) -> Option<String> {
+pub(crate) fn points(text: &str) -> Option<String> {
     match items(text) {
         Some(parts) => {
             let written = |text: &str| point(text).filter(|_| !text.starts_with(|c: char| c.is_ascii_digit()));
@@ -140,12 +140,12 @@ fn is_simple(text: &str) -> bool {
 }
 
 /// A text that stands beside an operator.
-pub(super) fn part(text: &str) -> String {
+pub(crate) fn part(text: &str) -> String {
     if is_simple(text) { text.to_owned() } else { format!("({text})") }
 }
 
 /// Half of a number; the number itself where it is one.
-pub(super) fn half(text: &str) -> String {
+pub(crate) fn half(text: &str) -> String {
     match text.parse::<f64>() {
         Ok(number) => format!("{}", number / 2.0),
         Err(_) => format!("{} / 2", part(text)),
@@ -153,7 +153,7 @@ pub(super) fn half(text: &str) -> String {
 }
 
 /// Its negative.
-pub(super) fn negative(text: &str) -> String {
+pub(crate) fn negative(text: &str) -> String {
     match text.strip_prefix('-').filter(|t| is_simple(t)) {
         Some(positive) => positive.to_owned(),
         None => format!("-{}", part(text)),
@@ -161,7 +161,7 @@ pub(super) fn negative(text: &str) -> String {
 }
 
 /// A number of degrees as an angle.
-pub(super) fn degrees(text: &str) -> String {
+pub(crate) fn degrees(text: &str) -> String {
     let number = text.strip_prefix('-').unwrap_or(text);
     if number.parse::<f64>().is_ok() { format!("{text}deg") } else { format!("{} * 1deg", part(text)) }
 }

@@ -1,7 +1,7 @@
 //! Statements of Gmsh, in its own language and through its interface to Python.
 
-use super::calls::{Call, items};
-use super::{Meant, Refusal};
+use crate::lang::syntax::foreign::calls::{Call, items};
+use crate::lang::syntax::foreign::{Meant, Refusal};
 use crate::lang::syntax::is_declaration;
 use crate::lang::syntax::token::Kind;
 
@@ -44,7 +44,7 @@ enum Entity {
 
 impl Refusal<'_> {
     /// `Point(1) = {0, 0, 0, lc};`, `Curve Loop(1) = {1, 2, 3};`, `Physical Curve("south") = {1};`
-    pub(super) fn gmsh_statement(&self) -> Option<Meant> {
+    pub(crate) fn gmsh_statement(&self) -> Option<Meant> {
         let open = (self.base + 1..self.end.min(self.base + 3)).find(|t| self.tokens.kinds[*t] == Kind::OpenRound)?;
         let close = self.closer(open)?;
         let list = close + 2;
@@ -59,7 +59,7 @@ impl Refusal<'_> {
     }
 
     /// `gmsh.model.geo.addPoint(0, 0, 0, lc, 1)`, `p1 = gmsh.model.occ.addPoint(0, 0, 0)`
-    pub(super) fn gmsh_call(&self) -> Option<Meant> {
+    pub(crate) fn gmsh_call(&self) -> Option<Meant> {
         let named = self.kind(self.base + 1) == Some(Kind::Equals);
         let calls = self.only_calls(if named { self.base + 2 } else { self.base }, self.end)?;
         let [call] = calls.as_slice() else { return None };
@@ -77,7 +77,7 @@ impl Refusal<'_> {
     }
 
     /// `Transfinite Curve {1} = 10;`, `Recombine Surface {1};`, `Mesh 2;`
-    pub(super) fn gmsh_meshing(&self) -> Option<Meant> {
+    pub(crate) fn gmsh_meshing(&self) -> Option<Meant> {
         let word = self.text(self.base, self.base + 1);
         let open = self.find(self.base, Kind::OpenCurly);
         let member = |prefix: &str| -> Option<String> {

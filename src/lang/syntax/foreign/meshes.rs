@@ -1,16 +1,16 @@
 //! Meshes made by a call, and settings and arguments with the signs of other languages.
 
-use super::{Meant, Refusal, opens};
-use crate::lang::elsewhere::ours;
-use crate::lang::settings::MESH;
+use crate::lang::syntax::foreign::{Meant, Refusal, opens};
 use crate::lang::syntax::token::Kind;
+use crate::lang::words::elsewhere::ours;
+use crate::mesh::{MeshSettings, Settings};
 
 /// What other tools call making a mesh.
 const CALLED: [&str; 5] = ["mesh", "Mesh", "generate_mesh", "make_mesh", "triangulate"];
 
 impl Refusal<'_> {
     /// `mesh m = mesh(s, size=0.1)`, `mesh m = s.mesh(0.1)`, `m = mesh(s)`, `mesh(s, size: 0.1)`.
-    pub(super) fn mesh_called(&self) -> Option<Meant> {
+    pub(crate) fn mesh_called(&self) -> Option<Meant> {
         let (name, from) = match (self.kind(self.base)?, self.kind(self.base + 1)?) {
             (Kind::Mesh | Kind::Let, Kind::Name) if matches!(self.kind(self.base + 2), Some(Kind::Equals | Kind::Of)) => {
                 (Some(self.base + 1), self.base + 3)
@@ -27,7 +27,7 @@ impl Refusal<'_> {
         let of = if word >= from + 2 { self.text(from, word - 1) } else { unnamed.next()? };
         let mut settings: Vec<String> = unnamed.map(|size| format!("size: {size}")).collect();
         for (key, value) in given.iter().filter_map(|(name, value)| name.as_deref().map(|n| (n, value))) {
-            settings.push(format!("{}: {value}", ours(key, MESH.iter().map(|k| k.key)).unwrap_or(key)));
+            settings.push(format!("{}: {value}", ours(key, MeshSettings::DECLARED.iter().map(|setting| setting.word)).unwrap_or(key)));
         }
         let name = match name {
             Some(at) => self.text(at, at + 1).to_owned(),
@@ -38,7 +38,7 @@ impl Refusal<'_> {
     }
 
     /// `circle(center=A, radius=5)`: every `=` of the declaration that stands behind a name in brackets.
-    pub(super) fn equals_for_colons(&self) -> Option<Meant> {
+    pub(crate) fn equals_for_colons(&self) -> Option<Meant> {
         if self.kind(self.at) != Some(Kind::Equals) || self.depth(self.at) == 0 {
             return None;
         }

@@ -3,26 +3,28 @@
 //! Each rule looks at the tokens of a declaration that the grammar refuses and gives the text that was meant; a rewriting is
 //! only offered when the grammar accepts it.
 
-mod calls;
-mod gmsh;
-mod meshes;
-mod shapes;
-mod solids;
+pub mod calls;
+pub mod gmsh;
+pub mod makes;
+pub mod meshes;
+pub mod shapes;
+pub mod solids;
 
 use std::cell::{OnceCell, RefCell};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
-use super::ast::Span;
-use super::is_declaration;
-use super::scan::Tokens;
-use super::token::Kind;
-use crate::lang::diag::Diagnostic;
-pub(in crate::lang) use calls::Call;
-pub(in crate::lang) use shapes::{Made, shape};
+use crate::lang::diag::diagnostic::Diagnostic;
+use crate::lang::diag::span::Span;
+pub(crate) use crate::lang::syntax::foreign::calls::Call;
+use crate::lang::syntax::foreign::makes::keyword_of;
+pub(crate) use crate::lang::syntax::foreign::shapes::{Made, shape};
+use crate::lang::syntax::is_declaration;
+use crate::lang::syntax::scan::Tokens;
+use crate::lang::syntax::token::Kind;
 
 /// A declaration that the grammar refuses, with the token at which it did.
-pub(super) struct Refusal<'a> {
+pub(crate) struct Refusal<'a> {
     source: &'a str,
     tokens: &'a Tokens,
     fresh: &'a FreshNames,
@@ -67,7 +69,7 @@ impl Brackets {
 
 /// Names for what was made without one: `circle_1`, `circle_2`, none of which stands in the source.
 #[derive(Default)]
-pub(super) struct FreshNames {
+pub(crate) struct FreshNames {
     numbers: RefCell<BTreeMap<&'static str, (BTreeSet<u64>, u64)>>,
     /// What the source declares as a function, in the words of this language or another; found once.
     functions: OnceCell<BTreeSet<String>>,
@@ -125,7 +127,7 @@ thread_local! {
 }
 
 /// What was meant.
-pub(super) struct Meant {
+pub(crate) struct Meant {
     /// What stands before the typed form.
     pub why: &'static str,
     /// The typed form.
@@ -140,10 +142,10 @@ const VALUE_WORDS: [&str; 14] =
 /// Words that declare a function in other languages.
 const FUNCTION_WORDS: [&str; 6] = ["def", "function", "func", "fun", "module", "lambda"];
 /// What other languages call showing a value.
-pub(in crate::lang) const PRINTS: [&str; 6] = ["print", "println", "printf", "echo", "puts", "show"];
+pub(crate) const PRINTS: [&str; 6] = ["print", "println", "printf", "echo", "puts", "show"];
 
 /// A report with what was meant as its help.
-pub(super) fn say(mut report: Diagnostic, meant: Option<Meant>) -> Diagnostic {
+pub(crate) fn say(mut report: Diagnostic, meant: Option<Meant>) -> Diagnostic {
     let Some(Meant { why, typed, at }) = meant else { return report };
     report.fixes.clear();
     if let Some(label) = report.labels.first_mut().filter(|l| l.text.starts_with("did you mean")) {
@@ -334,21 +336,15 @@ impl Refusal<'_> {
 
     /// `circle(…)` without a keyword and a name.
     fn nameless(&self) -> Option<Meant> {
-        use crate::lang::types::Ty;
         let whole = self.kind(self.base + 1) == Some(Kind::OpenRound) && self.closer(self.base + 1) == Some(self.end - 1);
         let function = self.text(self.base, self.base + 1);
         if whole && self.fresh.is_function(self.source, function) {
             let name = self.fresh.next(self.source, "part");
             return self.replaced("what is made gets a name", format!("let {name} = {}", self.text(self.base, self.end)));
         }
-        let builtin = crate::lang::std::builtins().find(|b| b.name == function).filter(|_| whole)?;
-        let word = match builtin.returns {
-            Ty::Curve => "curve",
-            Ty::Surface => "surface",
-            _ if function == "plane" => "surface",
-            _ => "let",
-        };
-        let name = self.fresh.next(self.source, builtin.name);
+        let (function, word) = keyword_of(function).filter(|_| whole)?;
+        let word = if function == "plane" { "surface" } else { word };
+        let name = self.fresh.next(self.source, function);
         self.replaced("what is made gets a name", format!("{word} {name} = {}", self.text(self.base, self.end)))
     }
 
@@ -567,7 +563,7 @@ fn ranges(text: &str) -> String {
 }
 
 /// The range that `range(…)` of these arguments is.
-pub(in crate::lang) fn range(arguments: &[&str]) -> Option<String> {
+pub(crate) fn range(arguments: &[&str]) -> Option<String> {
     let end = |text: &str| {
         if text.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_' || b == b'.') { text.to_owned() } else { format!("({text})") }
     };
@@ -581,9 +577,9 @@ pub(in crate::lang) fn range(arguments: &[&str]) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::LOOKED;
-    use crate::lang::diag::FileId;
-    use crate::lang::names::Names;
+    use crate::lang::diag::diagnostic::FileId;
     use crate::lang::syntax::parse;
+    use crate::lang::words::names::Names;
 
     /// What is looked at for the help on a text.
     fn work(text: &str) -> usize {

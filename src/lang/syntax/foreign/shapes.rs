@@ -1,10 +1,10 @@
 //! Shapes of other tools, as this language makes them: a solid is the shell of its faces.
 
-use super::calls::{Call, degrees, half, items, negative, part, point, points};
+use crate::lang::syntax::foreign::calls::{Call, degrees, half, items, negative, part, point, points};
 
 /// What a call of another tool makes.
 #[derive(Clone, Debug, PartialEq)]
-pub(in crate::lang) enum Made {
+pub(crate) enum Made {
     /// The expression of a curve.
     Curve(String),
     /// The expression of a surface.
@@ -98,7 +98,7 @@ const ALIASES: &[(&str, &[&str])] = &[
 ];
 
 /// A word of [`SHAPES`] that begins a name of what has none: in small letters.
-pub(super) fn stem(name: &str) -> &'static str {
+pub(crate) fn stem(name: &str) -> &'static str {
     match SHAPES.iter().find(|s| s.0 == name).map(|s| s.1) {
         Some(Shape::Box) => "block",
         Some(Shape::Cylinder) => "cylinder",
@@ -155,7 +155,7 @@ impl<'a> Given<'a> {
 }
 
 /// What a call of another tool makes; `None` where this language has nothing like it, or an argument says what is not known.
-pub(in crate::lang) fn shape(call: &Call) -> Option<Made> {
+pub(crate) fn shape(call: &Call) -> Option<Made> {
     let (_, shape, order, centred) = *SHAPES.iter().find(|s| s.0 == call.name)?;
     let known: Vec<&str> = ALIASES.iter().flat_map(|a| a.1).copied().chain(["d", "diameter", "center", "centre", "centered"]).collect();
     if !call.knows_only(&known) {
@@ -314,7 +314,7 @@ impl Made {
 }
 
 /// `[x, y, z]` and `45` as the turns that OpenSCAD makes of them, about x first.
-pub(super) fn turns(angles: &str) -> Option<Vec<String>> {
+pub(crate) fn turns(angles: &str) -> Option<Vec<String>> {
     const AXES: [&str; 3] = ["(1, 0, 0)", "(0, 1, 0)", "(0, 0, 1)"];
     match items(angles) {
         None => Some(vec![format!("angle: {}", degrees(angles))]),
@@ -327,7 +327,7 @@ pub(super) fn turns(angles: &str) -> Option<Vec<String>> {
 }
 
 /// One more than the last number of a range.
-pub(super) fn behind(last: &str) -> String {
+pub(crate) fn behind(last: &str) -> String {
     match last.trim().parse::<u64>() {
         Ok(n) => format!("{}", n.saturating_add(1)),
         Err(_) => format!("({} + 1)", part(last.trim())),

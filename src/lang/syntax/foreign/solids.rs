@@ -1,8 +1,9 @@
 //! Statements that make a shape in OpenSCAD, CadQuery, build123d, FreeCAD and Rhino.
 
-use super::calls::{Call, items, point, points};
-use super::shapes::{Made, behind, shape, stem, turns};
-use super::{Meant, Refusal};
+use crate::lang::syntax::foreign::calls::{Call, items, point, points};
+use crate::lang::syntax::foreign::makes::keyword_of;
+use crate::lang::syntax::foreign::shapes::{Made, behind, shape, stem, turns};
+use crate::lang::syntax::foreign::{Meant, Refusal};
 use crate::lang::syntax::is_declaration;
 use crate::lang::syntax::token::Kind;
 
@@ -10,7 +11,7 @@ const MADE: &str = "what is made gets a name";
 
 impl Refusal<'_> {
     /// `translate([1, 2, 3]) cube(10);`, `for (i = [0:5]) sphere(2);`, `cq.Workplane("XY").box(1, 2, 3)` without a name.
-    pub(super) fn shape_statement(&self) -> Option<Meant> {
+    pub(crate) fn shape_statement(&self) -> Option<Meant> {
         let (family, from) = match self.kind(self.base)? {
             Kind::For => self.scad_loop()?,
             Kind::Name => (String::new(), self.base),
@@ -22,8 +23,7 @@ impl Refusal<'_> {
     }
 
     /// `result = cq.Workplane("XY").box(1, 2, 3)`, `c = circle(5)`, `surface s = cylinder(h=10, r=5)`.
-    pub(super) fn shape_value(&self) -> Option<Meant> {
-        use crate::lang::types::Ty;
+    pub(crate) fn shape_value(&self) -> Option<Meant> {
         let declares = matches!(self.tokens.kinds[self.base], Kind::Surface | Kind::Curve | Kind::Let | Kind::Shell);
         let bound = self.base + usize::from(declares);
         if self.kind(bound) != Some(Kind::Name) || !matches!(self.kind(bound + 1), Some(Kind::Equals | Kind::Of)) {
@@ -35,16 +35,12 @@ impl Refusal<'_> {
         }
         let calls = self.only_calls(value, self.end).filter(|_| !declares)?;
         let [Call { name: function, .. }] = calls.as_slice() else { return None };
-        let word = match crate::lang::std::builtins().find(|b| b.name == function)?.returns {
-            Ty::Curve => "curve",
-            Ty::Surface => "surface",
-            _ => return None,
-        };
+        let word = keyword_of(function).map(|(_, word)| word).filter(|word| *word != "let")?;
         self.replaced("a declaration starts with a keyword", format!("{word} {}", self.text(self.base, self.end)))
     }
 
     /// `difference() { … }`, `union() { … }`, `hull() { … }`
-    pub(super) fn boolean(&self) -> Option<Meant> {
+    pub(crate) fn boolean(&self) -> Option<Meant> {
         let block = self.kind(self.base + 1) == Some(Kind::OpenRound)
             && self.closer(self.base + 1).is_some_and(|close| self.kind(close + 1) == Some(Kind::OpenCurly));
         let (why, typed) = match self.text(self.base, self.base + 1) {
@@ -60,7 +56,7 @@ impl Refusal<'_> {
     }
 
     /// `with BuildPart() as part:`
-    pub(super) fn block_of_python(&self) -> Option<Meant> {
+    pub(crate) fn block_of_python(&self) -> Option<Meant> {
         let opens = self.text(self.base, self.base + 1) == "with" && self.find(self.base, Kind::Colon).is_some();
         opens.then(|| Meant {
             why: "nothing needs to be opened: delete this line, and give each thing a name",
@@ -86,7 +82,7 @@ impl Refusal<'_> {
     }
 
     /// What the calls from a token to another make, and a word for it.
-    pub(super) fn made(&self, from: usize, end: usize) -> Option<(Made, &'static str)> {
+    pub(crate) fn made(&self, from: usize, end: usize) -> Option<(Made, &'static str)> {
         let calls = self.only_calls(from, end)?;
         if let Some(flat) = calls.iter().position(|c| c.name == "Workplane") {
             return workplane(&calls[flat..]);

@@ -1,0 +1,94 @@
+//! Curves of CAD files: transformed exactly, put in a row, and looked at before anything is computed from them.
+
+use std::sync::Arc;
+
+use glam::{DAffine3, DVec3, DVec4};
+
+use crate::base::limits;
+use crate::base::tolerance::Tolerance;
+use crate::geometry::arc::EllipticArc;
+use crate::geometry::composite::Composite;
+use crate::geometry::curve::Shape;
+use crate::geometry::nurbs::projected;
+use crate::geometry::{Curve, Kind, Nurbs};
+use crate::io::cad::damage::{Damage, damage};
+
+/// Coordinates must leave room for what is computed from them.
+pub fn check_reach(points: impl IntoIterator<Item = DVec3>) -> Result<(), Damage> {
+    let fits = |p: DVec3| p.abs().max_element() <= limits::COORDINATE && !p.is_nan();
+    if points.into_iter().all(fits) { Ok(()) } else { Err(damage("its coordinates are too large")) }
+}
+
+/// Weights must be above 0, and not too different to be added.
+pub fn check_weights(weights: &[f64]) -> Result<(), Damage> {
+    if let Some(k) = weights.iter().position(|w| *w <= 0.0) {
+        return Err(damage(format!("weight {} is {}; weights must be above 0", k + 1, weights[k])));
+    }
+    let (least, largest) = weights.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), w| (a.min(*w), b.max(*w)));
+    if largest > limits::COORDINATE || least < 1.0 / limits::COORDINATE {
+        return Err(damage(format!("its weights from {least:e} to {largest:e} cannot be added")));
+    }
+    Ok(())
+}
+
+/// Turns pieces that start where the one before does not end, when turning them closes the gap; returns the largest gap left. Points
+/// within `same` are one.
+pub fn ordered(pieces: &mut [Curve], same: f64) -> f64 {
+    let nearest = |p: DVec3, to: &Curve| p.distance(to.start()).min(p.distance(to.end()));
+    if let [first, second, ..] = pieces
+        && nearest(first.end(), second) > same
+        && nearest(first.start(), second) < 0.5 * nearest(first.end(), second)
+    {
+        *first = first.reversed();
+    }
+    let mut widest = 0.0_f64;
+    for k in 1..pieces.len() {
+        let end = pieces[k - 1].end();
+        let missed = end.distance(pieces[k].start());
+        if missed > same && end.distance(pieces[k].end()) < 0.5 * missed {
+            pieces[k] = pieces[k].reversed();
+        }
+        widest = widest.max(end.distance(pieces[k].start()));
+    }
+    widest
+}
+
+/// Control points and pieces of a curve: what a copy costs.
+pub fn weight(curve: &Curve) -> usize {
+    match curve.shape() {
+        Shape::Nurbs(c) => c.poles.len(),
+        Shape::Composite(c) => c.pieces.iter().map(weight).sum(),
+        _ => 1,
+    }
+}
+
+/// The curve transformed by any affine map, exactly; an offset within the tolerance.
+pub fn transformed(curve: &Curve, m: &DAffine3, tolerance: &Tolerance) -> Result<Curve, Damage> {
+    let origin = curve.origin();
+    Ok(match curve.shape() {
+        Shape::Line(a, b) => Curve::new(Shape::Line(m.transform_point3(*a), m.transform_point3(*b)), curve.kind(), origin),
+        Shape::Arc(arc) => {
+            let (u, v) = (m.transform_vector3(arc.u), m.transform_vector3(arc.v));
+            let moved = EllipticArc::new(m.transform_point3(arc.center), u, v, arc.sweep);
+            let kind = if moved.radius.is_some() { curve.kind() } else { Kind::Ellipse };
+            Curve::new(Shape::Arc(moved), kind, origin)
+        }
+        Shape::Composite(c) => {
+            let pieces: Result<Vec<Curve>, Damage> = c.pieces.iter().map(|piece| transformed(piece, m, tolerance)).collect();
+            Curve::new(Shape::Composite(Arc::new(Composite::new(pieces?))), curve.kind(), origin)
+        }
+        Shape::Nurbs(c) => from_nurbs(c, m, curve),
+        Shape::Offset(_) | Shape::Helix(_) => from_nurbs(&curve.to_nurbs(tolerance)?, m, curve),
+    })
+}
+
+fn from_nurbs(c: &Nurbs, m: &DAffine3, like: &Curve) -> Curve {
+    let poles = c.poles.iter().map(|q| transformed_pole(*q, m)).collect();
+    let moved = Nurbs { poles, knots: c.knots.clone(), ..*c };
+    Curve::new(Shape::Nurbs(Arc::new(moved)), like.kind(), like.origin())
+}
+
+/// A homogeneous control point transformed.
+pub fn transformed_pole(q: DVec4, m: &DAffine3) -> DVec4 {
+    (m.transform_point3(projected(q)) * q.w).extend(q.w)
+}

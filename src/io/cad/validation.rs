@@ -1,0 +1,44 @@
+//! Areas, volumes and centroids that a file states, against those of what came in.
+
+use crate::base::bbox::Box3;
+use crate::base::fault::Malformed;
+use crate::base::job;
+use crate::base::tolerance::STATED;
+use crate::io::cad::part::{Figure, Part, Stated};
+use crate::model::measure;
+use crate::surface::Surface;
+
+impl Part {
+    /// Compares what the file states with what was built; says each difference with its figures.
+    pub fn differences(&self) -> Vec<Malformed> {
+        self.stated.iter().filter_map(|stated| self.difference(stated)).collect()
+    }
+
+    fn difference(&self, stated: &Stated) -> Option<Malformed> {
+        job::look();
+        let surfaces: Vec<Surface> = stated.surfaces.iter().filter_map(|k| self.built.get(*k)).flatten().cloned().collect();
+        let faces = || surfaces.iter().map(|s| (s.clone(), false)).collect::<Vec<(Surface, bool)>>();
+        let compared = |word: &str, found: f64, given: f64, unit: &str| {
+            let off = (found - given) / given;
+            let said =
+                format!("{}: its {word} is {found:.6} {unit}, the file states {given:.6} {unit} ({:+.2} %)", stated.name, 100.0 * off);
+            (off.is_nan() || off.abs() > STATED).then(|| Malformed::line(stated.line, said))
+        };
+        let copies = stated.copies.max(1) as f64;
+        match stated.figure {
+            Figure::Area(given) => {
+                compared("area", surfaces.iter().map(measure::area).sum::<f64>() / copies, given, &format!("{}²", self.model_unit))
+            }
+            Figure::Volume(given) => {
+                compared("volume", measure::solid(&faces()).volume.abs() / copies, given, &format!("{}³", self.model_unit))
+            }
+            Figure::Centroid(given) => {
+                let size = surfaces.iter().map(Surface::hull).fold(Box3::EMPTY, Box3::union).diagonal();
+                let off = measure::solid(&faces()).centroid.distance(given);
+                let of_faces = measure::sheet(&surfaces).centroid.distance(given);
+                let said = format!("{}: its centroid is {off:.6} {} from where the file states it", stated.name, self.model_unit);
+                (off.min(of_faces) > STATED * size).then(|| Malformed::line(stated.line, said))
+            }
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! Makes the entities of a file from the things that it is to hold, and writes them with the global section.
+
+use std::io::{self, Write};
+
+use crate::base::job;
+use crate::io::cad::damage::Damage;
+use crate::io::files::loss::Loss;
+use crate::io::iges::entity_writer::{Role, Sheet, Values, counted, real};
+use crate::io::iges::write::maker::Maker;
+use crate::io::iges::write::things::{Scale, Shown, Thing};
+
+/// Flag and name of the units that scripts know.
+const UNITS: &[(&str, i64, &str)] =
+    &[("um", 9, "UM"), ("mm", 2, "MM"), ("cm", 10, "CM"), ("m", 6, "M"), ("km", 7, "KM"), ("in", 1, "INCH"), ("ft", 4, "FT")];
+
+/// Makes the file of things; fails for a thing that the format or the tolerance cannot hold, with its name.
+pub fn sheet(things: &[Thing], scale: &Scale) -> Result<Sheet, String> {
+    let mut maker = Maker { sheet: Sheet::default(), scale, off: 0.0, sampled: false, left_out: Vec::new() };
+    maker.sheet.layers(things.iter().flat_map(Thing::all_layers));
+    maker.sheet.keep(things.iter().flat_map(|thing| [thing.name.as_str(), thing.group.as_str()]));
+    let mut groups: Vec<(&str, Vec<u32>)> = Vec::new();
+    for thing in things {
+        job::look();
+        let made = match &thing.shown {
+            Shown::Point(p) => Ok(maker.sheet.add(116, 0, Role::Free, Values::new().point(*p / scale.model).int(0))),
+            Shown::Curve(chain) => chain.to_curve().map_err(Damage::from).and_then(|curve| maker.curve(&curve, Role::Free, true)),
+            Shown::Surface(surface) => maker.surface(surface),
+            Shown::Faces(faces) => maker.bodies(thing, faces),
+        };
+        let d = made.map_err(|Damage(why)| if thing.name.is_empty() { why } else { format!("`{}`: {why}", thing.name) })?;
+        if !thing.name.is_empty() {
+            maker.sheet.name(d, &thing.name);
+        }
+        if let Some(rgb) = thing.color {
+            maker.sheet.paint(d, rgb);
+        }
+        maker.sheet.put_on(d, &thing.layers);
+        if thing.group.is_empty() {
+            continue;
+        }
+        match groups.iter_mut().find(|g| g.0 == thing.group) {
+            Some(group) => group.1.push(d),
+            None => groups.push((&thing.group, vec![d])),
+        }
+    }
+    for (name, members) in groups {
+        let d = maker.sheet.add(402, 7, Role::Free, Values::new().int(members.len() as u32).ints(members));
+        maker.sheet.name(d, name);
+    }
+    if maker.off > 0.0 {
+        let how = if maker.sampled { ", as sampled" } else { "" };
+        maker.sheet.remark(format!(
+            "Surfaces that are no B-splines are off by at most {:.2e} {}{how}",
+            maker.off / scale.model,
+            scale.unit
+        ));
+    }
+    maker.sheet.left_out = maker.left_out;
+    Ok(maker.sheet)
+}
+
+/// Writes a file; `name` stands in its head. Returns what the format has no place for.
+pub fn write(sheet: &Sheet, name: &str, scale: &Scale, out: &mut dyn Write) -> io::Result<Vec<Loss>> {
+    let (_, flag, unit) = UNITS.iter().find(|u| u.0 == scale.unit).copied().unwrap_or(("", 3, scale.unit));
+    let file = real(scale.tolerance.point / scale.model);
+    let program = concat!("loft ", env!("CARGO_PKG_VERSION"));
+    // The same input gives the same bytes: no clock.
+    let date = "15H20000101.000000";
+    let plain = |text: &str| text.to_owned();
+    let head = [counted(name), counted(name), counted(program), counted(program)];
+    let mut global = vec![plain("1H,"), plain("1H;")];
+    global.extend(head);
+    global.extend(["32", "308", "15", "308", "15"].map(plain));
+    global.extend([
+        counted(name),
+        plain("1."),
+        flag.to_string(),
+        counted(unit),
+        plain("1"),
+        plain("1."),
+        plain(date),
+        file,
+        real(sheet.largest()),
+    ]);
+    global.extend([String::new(), String::new(), plain("11"), plain("0"), plain(date)]);
+    sheet.write(&global, out)?;
+    let left_out = sheet.left_out.iter().cloned().map(Loss::LeftOut);
+    Ok(sheet.renamed().into_iter().chain(left_out).collect())
+}

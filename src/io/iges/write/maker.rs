@@ -1,0 +1,14 @@
+//! A file that is being made, with what is told of its accuracy.
+
+use crate::io::iges::entity_writer::Sheet;
+use crate::io::iges::write::things::Scale;
+
+pub(crate) struct Maker<'s> {
+    pub(crate) sheet: Sheet,
+    pub(crate) scale: &'s Scale,
+    /// How far nets are from their surfaces at most, model units, and whether all that is known of one are samples.
+    pub(crate) off: f64,
+    pub(crate) sampled: bool,
+    /// What is not in the file, in words.
+    pub(crate) left_out: Vec<String>,
+}

@@ -1,0 +1,138 @@
+//! `picture things to "…" { … }`: resolved to plain data for the session.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use crate::base::limits;
+use crate::base::origin::Origin;
+use crate::draw::View;
+use crate::lang::declare::collections::{Resolved, find};
+use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::eval::machine::{Code, Gather};
+use crate::lang::syntax::ast;
+use crate::lang::syntax::ast::{ExprId, Keyword};
+use crate::lang::values::plans::{PICTURE_SIZE, PictureSpec, Show};
+use crate::lang::values::settings;
+use crate::lang::values::value::Value;
+
+fn flag(settings: &[Resolved], key: &str) -> Option<bool> {
+    match find(settings, key)?.value {
+        Value::Bool(b) => Some(b),
+        _ => None,
+    }
+}
+
+fn pixels(settings: &[Resolved], key: &str, default: u32) -> u32 {
+    match find(settings, key).map(|r| &r.value) {
+        Some(Value::Number(q)) => q.value as u32,
+        _ => default,
+    }
+}
+
+fn vector(settings: &[Resolved], key: &str) -> Option<(DVec3, Origin)> {
+    let found = find(settings, key)?;
+    match found.value {
+        Value::Vector(v, _) => Some((v, found.origin)),
+        _ => None,
+    }
+}
+
+impl Cx<'_> {
+    pub(crate) fn picture(
+        &mut self,
+        code: Code<'_>,
+        member: [u32; 2],
+        (things, to): (&[ExprId], Option<ExprId>),
+        settings: &[ast::Setting],
+    ) -> Result<PictureSpec, Halt> {
+        let mut gather = Gather::default();
+        let named: Vec<String> = things.iter().map(|t| self.source(code, *t).split_whitespace().collect::<Vec<_>>().join(" ")).collect();
+        let drawn = gather.take(self.things(code, things, Keyword::Picture));
+        let path = gather.take(self.path(code, to));
+        let resolved = gather.take(self.settings(code, "picture", settings::PICTURE, settings));
+        let zoom = settings.iter().find(|s| self.names.text(s.key) == "zoom").map(|s| s.value);
+        let zoom = zoom.map(|id| self.things(code, &[id], Keyword::Picture)).and_then(|found| gather.take(found));
+        gather.done()?;
+        let resolved = resolved.unwrap_or_default();
+        let view = self.view(code, settings, &resolved)?;
+        let size = (pixels(&resolved, "width", PICTURE_SIZE.0), pixels(&resolved, "height", PICTURE_SIZE.1));
+        self.page(code, settings, size)?;
+        let word = |key: &str| match find(&resolved, key) {
+            Some(Resolved { value: Value::Word(w), origin, .. }) => Some((w.clone(), *origin)),
+            _ => None,
+        };
+        let title = match find(&resolved, "title").map(|r| &r.value) {
+            Some(Value::Text(text)) => Some(Arc::clone(text)),
+            _ => None,
+        };
+        let is = |key: &str| flag(&resolved, key);
+        let show = Show {
+            elements: is("elements"),
+            borders: is("borders"),
+            network: is("network"),
+            labels: is("labels"),
+            axes: is("axes"),
+            ruler: is("ruler"),
+            legend: is("legend"),
+        };
+        let (path, path_origin) = path.unwrap_or_default();
+        let shade = word("shade");
+        let origin = self.own_origin(code, member);
+        let things = drawn.unwrap_or_default();
+        Ok(PictureSpec {
+            things,
+            named: named.join(", "),
+            path,
+            path_origin,
+            view,
+            size,
+            shade,
+            zoom: zoom.unwrap_or_default(),
+            title,
+            show,
+            origin,
+        })
+    }
+
+    /// Where the eye is; E306 for a direction without length or an up along it.
+    fn view(&mut self, code: Code<'_>, settings: &[ast::Setting], resolved: &[Resolved]) -> Result<View, Halt> {
+        let place = |cx: &Self, key: &str| settings.iter().find(|s| cx.names.text(s.key) == key).map(|s| s.value);
+        let mut view = match find(resolved, "view").map(|r| &r.value) {
+            Some(Value::Word(word)) => View::named(word),
+            Some(Value::Vector(eye, _)) => Some(View { eye: *eye, up: None, perspective: false }),
+            _ => View::named("isometric"),
+        }
+        .ok_or(Halt::Bug("a view that is none"))?;
+        let up = vector(resolved, "up").map(|found| found.0);
+        view.up = up.or(view.up);
+        view.perspective = flag(resolved, "perspective").unwrap_or(false);
+        for (key, direction) in [("view", Some(view.eye)), ("up", up)] {
+            if let (Some(id), Some(direction)) = (place(self, key), direction)
+                && direction.try_normalize().is_none()
+            {
+                return Err(self
+                    .error(code, "E306", format!("`{key}` is a direction, got one without length"), code.span(id), "no length")
+                    .stop());
+            }
+        }
+        if let (Some(id), true) = (place(self, "up"), view.up_is_lost()) {
+            let text = "`up` runs along the line of sight, so nothing is up in the picture";
+            return Err(self.error(code, "E306", text, code.span(id), "the eye looks along this").help("a direction across it").stop());
+        }
+        Ok(view)
+    }
+
+    /// E306 for more pixels than a picture may have.
+    fn page(&mut self, code: Code<'_>, settings: &[ast::Setting], (width, height): (u32, u32)) -> Result<(), Halt> {
+        let pixels = u64::from(width) * u64::from(height);
+        let last = settings.iter().rfind(|s| matches!(self.names.text(s.key), "width" | "height")).map(|s| s.value);
+        match last {
+            Some(id) if pixels > limits::PICTURE_PIXELS => {
+                let text = format!("a picture has at most {} pixels, got {width} × {height} = {pixels}", limits::PICTURE_PIXELS);
+                Err(self.error(code, "E306", text, code.span(id), "too many together").stop())
+            }
+            _ => Ok(()),
+        }
+    }
+}

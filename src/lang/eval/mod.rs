@@ -1,0 +1,31 @@
+//! Evaluation: declarations on demand, expressions, calls and builtins.
+
+pub mod bind;
+pub mod call;
+pub mod came_from;
+pub mod circles;
+pub mod coerce;
+pub mod context;
+pub mod drafts;
+pub mod element_words;
+pub mod expr;
+pub mod faults;
+pub mod glued;
+pub mod imported_faces;
+pub mod joining;
+pub mod later;
+pub mod load;
+pub mod machine;
+pub mod many;
+pub mod meetings;
+pub mod members;
+pub mod memory;
+pub mod module;
+pub mod near;
+pub mod operators;
+pub mod room;
+pub mod scene;
+pub mod show;
+pub mod stages;
+pub mod std;
+pub mod typed_calls;

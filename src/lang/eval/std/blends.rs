@@ -1,0 +1,42 @@
+//! Roundings between surfaces.
+
+use crate::base::fault::{Say, ValueFault};
+use crate::builtins;
+use crate::lang::eval::std::surfaces::finished;
+use crate::lang::values::types::{Length, Point};
+use crate::surface::{Surface, rolling};
+
+builtins! {
+    /// Two surfaces with a rounding in the place of the edge in which they meet.
+    ///
+    /// A list of three: the first surface cut back, the rounding, the second one cut back. The rounding is the envelope of a ball that
+    /// rolls along the edge and touches both; it joins both smoothly. u runs along the edge, v from the first surface to the second;
+    /// its normal is on the side of the first one's. Where a surface extends past the edge, its part on the side of the point
+    /// `keep:` stays and the rest is cut off too; without `keep:` the ball is on the side of the other one's normal. Between planes,
+    /// and round an axis, it is a part of a cylinder or a torus, exactly; elsewhere a net within a quarter of the tolerance. An open
+    /// edge ends on borders of both surfaces. A radius that does not fit is E673, which states the largest one.
+    /// ```loft
+    /// surface floor = plane(polyline([(0, 0, 0), (2m, 0, 0), (2m, 1m, 0), (0, 1m, 0)], closed: true))
+    /// surface wall = extrude(line((0, 0, 0), (2m, 0, 0)), by: (0, 0, 1m))
+    /// let parts = blend(wall, floor, radius: 200mm)
+    /// check parts[1].area == pi / 2 * 200mm * 2m within 1e-9%
+    /// shell corner of parts
+    /// ```
+    fn blend(
+        /// One surface.
+        a: Surface,
+        /// The other one.
+        b: Surface,
+        /// Radius of the ball, above 0.
+        radius: Length,
+        /// A point on the side of the edge that stays, where a surface extends past it.
+        keep: Option<Point>,
+    ) -> Vec<Surface> = |cx, a, b, radius, keep| {
+        if radius.0 <= 0.0 {
+            return Err(ValueFault::OutsideRange { argument: "radius", found: cx.length(radius.0), range: "above 0".to_owned() }.into());
+        }
+        let (origin, tolerance) = (cx.origin(), cx.tolerance()?);
+        let parts = rolling([&a, &b], radius.0, keep.map(|p| p.0), origin, &tolerance)?;
+        parts.into_iter().map(|part| finished(cx, part, &[])).collect()
+    };
+}

@@ -1,0 +1,160 @@
+//! How faces join along the edges they share.
+
+use crate::base::bbox::Box3;
+use crate::base::fault::{Say, SurfaceFault, ValueFault};
+use crate::base::tolerance::Tolerance;
+use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::eval::scene::Scene;
+use crate::lang::eval::std::kinds::{EdgeOf, EdgeOrSurface, Faces};
+use crate::lang::values::types::{Angle, Length};
+use crate::lang::values::value::Value;
+use crate::model::{Contact, EdgeId, SurfaceId};
+use crate::surface::Surface;
+use crate::{builtins, fields};
+
+/// The stretches that faces of two lists share; without a second list all that the first one's share.
+fn shared(scene: &Scene, (a, b): (&[Surface], Option<&[Surface]>), (near, tolerance): (f64, &Tolerance)) -> Result<Vec<Contact>, Halt> {
+    let places = |list: &[Surface]| Ok::<_, Halt>(scene.find_all(list)?.into_iter().map(|(id, _)| id).collect::<Vec<_>>());
+    let ours = places(a)?;
+    let theirs = b.map(places).transpose()?;
+    let members: Vec<SurfaceId> = ours.iter().chain(theirs.iter().flatten()).copied().collect();
+    let of = |face: crate::model::PatchId| scene.model.patches[face.index()].surface;
+    let contacts = scene.model.contacts((&members, near), (&scene.network, tolerance), |one, other| match &theirs {
+        None => true,
+        Some(theirs) => {
+            let (one, other) = (of(one.0), of(other.0));
+            ours.contains(&one) && theirs.contains(&other) || ours.contains(&other) && theirs.contains(&one)
+        }
+    });
+    if let (true, Some(theirs)) = (contacts.is_empty(), theirs) {
+        let found = scene.model.apart(&ours, &theirs);
+        let origin = |id: SurfaceId| scene.model.surfaces[id.index()].surface.origin();
+        let (first, last) = found.map_or((ours.first().copied(), theirs.first().copied()), |f| (Some(f.surfaces.0), Some(f.surfaces.1)));
+        let (a, b) = (first.map(origin).unwrap_or_default(), last.map(origin).unwrap_or_default());
+        let (gap, at) = found.map_or((0.0, glam::DVec3::ZERO), |f| (f.gap, f.at));
+        return Err(SurfaceFault::NotAdjacent { a, b, gap, at }.into());
+    }
+    Ok(contacts)
+}
+
+/// A stretch as a record.
+fn record_of(cx: &mut Cx, scene: &Scene, contact: &Contact, tolerance: &Tolerance) -> Value {
+    let name = |cx: &Cx, face: crate::model::PatchId| {
+        let surface = scene.model.patches[face.index()].surface;
+        Value::text(&cx.surface_name(&scene.model.surfaces[surface.index()].surface))
+    };
+    let (a, b) = (name(cx, contact.faces.0), name(cx, contact.faces.1));
+    let angle = |pick: fn(&crate::model::Spread) -> f64| contact.angle.as_ref().map_or(Value::None, |s| Value::angle(pick(s)));
+    let g1 = contact.angle.map_or(Value::None, |s| Value::Bool(s.max <= tolerance.angle));
+    cx.record([
+        ("a", a),
+        ("b", b),
+        ("length", Value::length(contact.length)),
+        ("mid", Value::point(contact.middle)),
+        ("gap_min", Value::length(contact.gap.min)),
+        ("gap_max", Value::length(contact.gap.max)),
+        ("gap_mean", Value::length(contact.gap.mean)),
+        ("gap_at", Value::point(contact.gap.at)),
+        ("angle_min", angle(|s| s.min)),
+        ("angle_max", angle(|s| s.max)),
+        ("angle_mean", angle(|s| s.mean)),
+        ("angle_at", contact.angle.map_or(Value::None, |s| Value::point(s.at))),
+        ("c0", Value::Bool(contact.gap.max <= tolerance.point)),
+        ("g1", g1),
+    ])
+}
+
+/// The stretches along which an edge of the model joins two faces.
+fn along(cx: &mut Cx, edge: &EdgeOf) -> Result<Vec<Contact>, Halt> {
+    let tolerance = cx.tolerance()?;
+    let (model, network) = (cx.model(&edge.0)?, cx.network_of(&edge.0)?);
+    const SAMPLES: u32 = 32;
+    let Some(track) = model.shared_track(&edge.1, &network) else { return Ok(Vec::new()) };
+    let length = track.length();
+    let around = Box3::of((0..=SAMPLES).map(|k| track.point(length * f64::from(k) / f64::from(SAMPLES))));
+    // No point of the edge is farther from a sample than half a step.
+    let reach = tolerance.point + length / f64::from(SAMPLES);
+    let near = |n: &usize| model.surfaces[*n].surface.hull().touches(&around, reach);
+    let own: Vec<SurfaceId> = edge.1.faces.iter().map(|face| model.patches[face.index()].surface).collect();
+    // What a shell glued is one over its distance, faces beside it are not asked.
+    let glued = edge.1.courses.len() > 1;
+    let members: Vec<SurfaceId> = if glued { own } else { (0..model.surfaces.len()).filter(near).map(SurfaceId::at).collect() };
+    let reach = if glued { edge.1.near } else { tolerance.point };
+    let on = |at: EdgeId| edge.1.courses.iter().flatten().any(|part| part.edge == at);
+    let mut found = model.contacts((&members, reach), (&network, &tolerance), |a, b| on(a.1) || on(b.1));
+    // Of a long border that several shorter ones meet, what lies beside this edge.
+    found.retain(|contact| track.distance(contact.middle) <= reach.max(tolerance.point));
+    Ok(found)
+}
+
+builtins! {
+    /// How the faces of two surfaces join along the edges they share.
+    ///
+    /// One record for each stretch that they share: by the faces of the first list, then along the border of each. `gap` is the distance of the first face's border from the second one's, `angle` the angle between the normals,
+    /// 0 to 90 degrees whatever their sides; of each the least, the largest, the mean and the place of the largest. They are
+    /// taken at 200 or more equally spaced points and refined round the extremes. `c0` says that the gap stays within
+    /// the tolerance, `g1` that the angle is below that of a kink. With one argument all inner edges are listed. Where more
+    /// than two faces meet, each pair has a record.
+    /// Of a shell these are its edges between two faces, glued as the shell glues them. Faces that share no edge are E618;
+    /// `within:` counts borders up to this distance apart as shared.
+    /// ```loft
+    /// curve south = line((0, 0, 0), (4m, 0, 0))
+    /// surface wall = extrude(south, by: (0, 0, 3m))
+    /// surface slab = extrude(south, by: (0, 2m, 0))
+    /// let join = connection(wall, slab)[0]
+    /// let angle = join.angle_max // => 90deg
+    /// report connection(wall, slab)
+    /// ```
+    fn connection(
+        /// A surface, a shell, or several.
+        a: Faces,
+        /// What it joins; left out, the inner edges of `a` are listed.
+        b: Option<Faces>,
+        /// Largest distance of borders that count as shared; when left out that of the shell, else the model's tolerance.
+        within: Option<Length>,
+    ) -> Vec<Value> = |cx, a, b, within| {
+        let (module, tolerance) = (cx.module(), cx.tolerance()?);
+        let stated = match within {
+            None => None,
+            Some(d) if d.0 >= tolerance.point => Some(d.0),
+            Some(d) => {
+                let (found, range) = (cx.length(d.0), format!("at least the tolerance, {}", cx.length(tolerance.point)));
+                return Err(ValueFault::OutsideRange { argument: "within", found, range }.into());
+            }
+        };
+        let glued = a.has_shell() || b.as_ref().is_some_and(Faces::has_shell);
+        let snap = a.snap().into_iter().chain(b.as_ref().and_then(Faces::snap)).reduce(f64::max);
+        let (a, b) = (a.surfaces(), b.map(|b| b.surfaces()));
+        let scene = Scene::of(cx, module, a.iter().chain(b.iter().flatten()))?;
+        let near = match stated {
+            Some(near) => near,
+            None if glued => {
+                let places = scene.find_all(a.iter().chain(b.iter().flatten()))?;
+                scene.model.reach(places.into_iter().map(|place| place.0), snap, &tolerance)
+            }
+            None => tolerance.point,
+        };
+        let contacts = shared(&scene, (&a, b.as_deref()), (near, &tolerance))?;
+        Ok(contacts.iter().map(|contact| record_of(cx, &scene, contact, &tolerance)).collect())
+    };
+}
+
+fields! {
+    /// The largest distance between the faces at an edge, or in a surface's net.
+    ///
+    /// Of the borders of the faces, or of the curves of the net where they should meet. `none` where only one face is at an edge; where more than two meet it is the largest of all pairs. `none` too of a surface that
+    /// was not made through a net.
+    fn gap(of: EdgeOrSurface) -> Option<Length> = |cx, of| {
+        Ok(match of {
+            EdgeOrSurface::Edge(edge) => along(cx, &edge)?.iter().map(|c| c.gap.max).reduce(f64::max).map(Length),
+            EdgeOrSurface::Surface(s) => s.net_gaps().first().map(|gap| Length(gap.by)),
+        })
+    };
+    /// Largest angle between the normals of the faces at an edge.
+    ///
+    /// From 0 to 90 degrees, whatever their sides; `none` where only one face is; where more than two meet, the largest of
+    /// all pairs.
+    fn angle(of: EdgeOf) -> Option<Angle> = |cx, of| {
+        Ok(along(cx, &of)?.iter().filter_map(|c| c.angle).map(|a| a.max).reduce(f64::max).map(Angle))
+    };
+}

@@ -1,0 +1,418 @@
+//! Patches, edges, vertices and loops of surfaces and shells, and places on surfaces.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use crate::base::bbox::Box3;
+use crate::base::fault::ValueFault;
+use crate::base::origin::Origin;
+use crate::lang::eval::context::{Cx, Halt};
+use crate::lang::eval::scene::Scene;
+use crate::lang::eval::std::choosing;
+use crate::lang::eval::std::kinds::{Carrier, EdgeKey, EdgeOf, Edged, Faces, PatchOf, VertexOf};
+use crate::lang::eval::std::surfaces::checked_uv;
+use crate::lang::values::types::{Angle, Direction, Length, Point};
+use crate::lang::values::value::{Home, ShellValue, Value};
+use crate::model::contact::Turn;
+use crate::model::{EdgeId, Model, PatchId, SharedEdges, SurfaceId};
+use crate::network::Chain;
+use crate::surface::{IsoLine, Surface, SurfaceKind};
+use crate::{builtins, fields};
+
+/// The patches of a declared surface in the model of the script.
+fn patches(cx: &mut Cx, surfaces: &[Surface]) -> Result<(Home, Arc<Model>, Vec<PatchId>), Halt> {
+    let module = cx.module();
+    let (scene, home) = Scene::at_home(cx, module, surfaces)?;
+    let places = scene.find_all(surfaces)?;
+    let patches = places.iter().flat_map(|(id, _)| scene.model.patches_of(*id)).collect();
+    Ok((home, scene.model, patches))
+}
+
+/// An edge of the model as a value.
+fn whole(home: &Home, model: &Model, edge: EdgeId) -> EdgeOf {
+    EdgeOf(home.clone(), Arc::new(model.whole_edge(edge)))
+}
+
+/// Edges of some surfaces, along the border of each patch.
+fn edges(cx: &mut Cx, surfaces: &[Surface]) -> Result<Vec<EdgeOf>, Halt> {
+    let (home, model, patches) = patches(cx, surfaces)?;
+    Ok(model.edges_along(&patches).into_iter().map(|edge| whole(&home, &model, edge)).collect())
+}
+
+fn vertices(cx: &mut Cx, surfaces: &[Surface]) -> Result<Vec<VertexOf>, Halt> {
+    let (home, model, patches) = patches(cx, surfaces)?;
+    Ok(model.vertices_of(&patches).into_iter().map(|vertex| VertexOf(home.clone(), vertex)).collect())
+}
+
+/// Edges of each patch's loop in order.
+fn loops(cx: &mut Cx, surfaces: &[Surface]) -> Result<Vec<Vec<EdgeOf>>, Halt> {
+    let (home, model, patches) = patches(cx, surfaces)?;
+    let of_patch = |patch: &PatchId| model.border_of(*patch).into_iter().map(|(e, _)| whole(&home, &model, e)).collect();
+    Ok(patches.iter().map(of_patch).collect())
+}
+
+/// The edges of a shell, as values in the order of its skin, and the skin.
+fn skin(cx: &mut Cx, faces: &Faces) -> Result<(Vec<EdgeOf>, SharedEdges), Halt> {
+    let (surfaces, stated) = (faces.surfaces(), faces.snap());
+    let (home, model, _) = patches(cx, &surfaces)?;
+    let (tolerance, network) = (cx.tolerance()?, cx.network_of(&home)?);
+    let scene = Scene { model, network };
+    let places: Vec<SurfaceId> = scene.find_all(&surfaces)?.into_iter().map(|place| place.0).collect();
+    let near = scene.model.reach(places.iter().copied(), stated, &tolerance);
+    let skin = scene.model.shared_edges(&places, near, (&scene.network, &tolerance));
+    Ok((skin.edges.iter().map(|edge| EdgeOf(home.clone(), Arc::new(edge.clone()))).collect(), skin))
+}
+
+/// Some edges of a skin by their places.
+fn picked(all: &[EdgeOf], places: &[usize]) -> Vec<EdgeOf> {
+    places.iter().map(|k| all[*k].clone()).collect()
+}
+
+/// Edges at which faces turn by more than an angle, radians.
+fn creases(cx: &mut Cx, faces: &Faces, angle: f64) -> Result<Vec<EdgeOf>, Halt> {
+    let (all, _) = skin(cx, faces)?;
+    let Some(home) = all.first().map(|edge| edge.0.clone()) else { return Ok(all) };
+    let (model, network, tolerance) = (cx.model(&home)?, cx.network_of(&home)?, cx.tolerance()?);
+    let scene = Scene { model, network };
+    let surfaces = faces.surfaces();
+    let places: Vec<SurfaceId> = scene.find_all(&surfaces)?.into_iter().map(|place| place.0).collect();
+    let near = scene.model.reach(places.iter().copied(), faces.snap(), &tolerance);
+    let turns = scene.model.turns((&places, near), (&scene.network, &tolerance));
+    let on = |edge: &EdgeOf, turn: &Turn| {
+        edge.1.courses.iter().flatten().any(|part| part.edge == turn.edge && part.s.0 <= turn.s && turn.s <= part.s.1)
+    };
+    let turns = |edge: &EdgeOf| turns.iter().any(|turn| turn.turn > angle && on(edge, turn));
+    Ok(all.into_iter().filter(turns).collect())
+}
+
+/// The box that a record with the points `min` and `max` is.
+fn corners(cx: &mut Cx, value: &Value) -> Result<Box3, Halt> {
+    let (min, max) = (cx.names.intern("min"), cx.names.intern("max"));
+    let point = |value: Option<&Value>| match value {
+        Some(Value::Vector(p, _) | Value::Node(p)) => Some(*p),
+        _ => None,
+    };
+    let ends = if let Value::Record(record) = value { [min, max].map(|key| point(record.get(key))) } else { [None, None] };
+    match ends {
+        [Some(a), Some(b)] => Ok(Box3::of([a, b])),
+        _ => Err(ValueFault::WrongKind { argument: "of", wanted: "a box", found: cx.kind(value) }.into()),
+    }
+}
+
+/// The geometry of an edge at the middle of its length.
+fn middle(cx: &mut Cx, edge: &EdgeOf) -> Result<DVec3, Halt> {
+    let (model, network) = (cx.model(&edge.0)?, cx.network_of(&edge.0)?);
+    let track = model.shared_track(&edge.1, &network).ok_or(Halt::Bug("an edge without geometry"))?;
+    Ok(track.point(0.5 * track.length()))
+}
+
+/// The one edge of some surfaces that lies on a curve or at a point.
+fn edge_of(cx: &mut Cx, surfaces: &[Surface], key: &EdgeKey) -> Result<EdgeOf, Halt> {
+    let (home, model, patches) = patches(cx, surfaces)?;
+    let scene = Scene { model: model.clone(), network: cx.network_of(&home)? };
+    let mut found: Vec<EdgeId> = Vec::new();
+    for edge in model.edges_of(&patches) {
+        if choosing::lies(cx, &scene, &model.whole_edge(edge), key)? {
+            found.push(edge);
+        }
+    }
+    let swept: Vec<EdgeId> = match key {
+        EdgeKey::Point(_) => found.iter().copied().filter(|edge| is_swept(&model, &patches, *edge)).collect(),
+        EdgeKey::Curve(_) => Vec::new(),
+    };
+    match (found.as_slice(), swept.as_slice()) {
+        ([one], _) | (_, [one]) => Ok(whole(&home, &model, *one)),
+        _ => {
+            let of = surfaces.first().map_or(Origin::NONE, Surface::origin);
+            let places = found.iter().map(|e| model.track(*e, &scene.network).point(0.5 * model.edges[e.index()].length)).collect();
+            Err(ValueFault::NotOneEdge { of, places }.into())
+        }
+    }
+}
+
+/// Whether an edge is the way of one point of a profile that was moved or turned: v stands still along it.
+fn is_swept(model: &Model, patches: &[PatchId], edge: EdgeId) -> bool {
+    patches.iter().map(|p| &model.patches[p.index()]).any(|patch| {
+        let kind = model.surfaces[patch.surface.index()].surface.kind();
+        let along = |side: usize| patch.sides.get(side).is_some_and(|s| s.edges.iter().any(|(e, _)| *e == edge));
+        matches!(kind, SurfaceKind::Extrude | SurfaceKind::Revolve | SurfaceKind::Along | SurfaceKind::Sweep) && (along(0) || along(2))
+    })
+}
+
+/// The modeling curve along an edge.
+pub(crate) fn curve_of(cx: &mut Cx, edge: EdgeOf) -> Result<Chain, Halt> {
+    let tolerance = cx.tolerance()?;
+    let scene = Scene { model: cx.model(&edge.0)?, network: cx.network_of(&edge.0)? };
+    let later = || ValueFault::NotInThisVersion { what: "a line across a trimmed surface as a curve".to_owned() };
+    Ok(scene.shared_chain(&edge.1, &tolerance)?.ok_or_else(later)?)
+}
+
+/// The line of constant u or v.
+fn iso_line(cx: &mut Cx, of: &Surface, at: IsoLine, argument: &'static str) -> Result<Chain, Halt> {
+    let tolerance = cx.tolerance()?;
+    if !(0.0..=1.0).contains(&at.value()) {
+        let (found, range) = (at.value().to_string(), "between 0 and 1".to_owned());
+        return Err(ValueFault::OutsideRange { argument, found, range }.into());
+    }
+    let word = if matches!(at, IsoLine::U(_)) { "u" } else { "v" };
+    let what = format!("a line of constant {word} inside a surface by `{}`", of.kind().name());
+    let curve = of.iso(at, cx.origin(), &tolerance)?.ok_or(ValueFault::NotInThisVersion { what })?;
+    Ok(Chain::of_curve(&curve))
+}
+
+builtins! {
+    /// The edge of a surface that lies along a curve, or on which a point lies.
+    ///
+    /// Of the edges of an extruded or turned surface that meet in a point it is the one that this point of the profile sweeps.
+    /// ```loft
+    /// curve south = line((0, 0, 0), (4m, 0, 0))
+    /// surface wall = extrude(south, by: (0, 0, 3m))
+    /// let foot = wall.edge(south).length // => 4000mm
+    /// let post = wall.edge(south.end).length // => 3000mm
+    /// ```
+    fn edge(
+        /// A surface.
+        of: Surface,
+        /// A curve it lies on, or a point of it.
+        on: EdgeKey,
+    ) -> EdgeOf = |cx, of, on| edge_of(cx, &[of], &on);
+
+    /// Edges at which the faces of surfaces or shells turn by more than an angle.
+    ///
+    /// The angle is that between the normals of the two faces, 0 where they join smoothly and 180 degrees where they fold
+    /// back; the largest of 200 or more places along the edge counts, and of more than two faces the largest of all pairs.
+    /// Free edges have none (`.rims`).
+    /// ```loft
+    /// curve south = line((0, 0, 0), (4m, 0, 0))
+    /// surface wall = extrude(south, by: (0, 0, 3m))
+    /// surface slab = extrude(south, by: (0, 2m, 0))
+    /// shell s of wall, slab
+    /// let corner = s.creases(angle: 30deg)[0].length // => 4000mm
+    /// ```
+    fn creases(
+        /// A surface, a shell, or several.
+        of: Edged,
+        /// How far the normal turns at least.
+        angle: Angle,
+    ) -> Vec<EdgeOf> = |cx, of, angle| creases(cx, &of.0, angle.0);
+
+    /// Edges that lie on a plane, surface, shell or curve.
+    ///
+    /// An edge lies on it when all of it does, within the tolerance.
+    /// ```loft
+    /// curve south = line((0, 0, 0), (4m, 0, 0))
+    /// surface wall = extrude(south, by: (0, 0, 3m))
+    /// let top = wall.edges.on(plane(at: (0, 0, 3m), normal: (0, 0, 1)))[0].length // => 4000mm
+    /// ```
+    fn on(
+        /// Edges; lists of them flatten.
+        edges: Vec<Value>,
+        /// A plane, surface, shell or curve.
+        carrier: Carrier,
+    ) -> Vec<EdgeOf> = |cx, edges, carrier| choosing::on(cx, edges, &carrier);
+
+    /// Edges that lie inside a box along the axes, its border included.
+    ///
+    /// ```loft
+    /// curve south = line((0, 0, 0), (4m, 0, 0))
+    /// surface wall = extrude(south, by: (0, 0, 3m))
+    /// let low = wall.edges.inside(box((0, 0, 0), (4m, 0, 1m)))[0].length // => 4000mm
+    /// ```
+    fn inside(
+        /// Edges; lists of them flatten.
+        edges: Vec<Value>,
+        /// A box, as `box` and `bbox` give it.
+        of: Value,
+    ) -> Vec<EdgeOf> = |cx, edges, of| {
+        let around = corners(cx, &of)?;
+        choosing::inside(cx, edges, &around)
+    };
+
+    /// Edges whose length is between two lengths.
+    ///
+    /// Both bounds are included, within the tolerance.
+    /// ```loft
+    /// curve south = line((0, 0, 0), (4m, 0, 0))
+    /// surface wall = extrude(south, by: (0, 0, 3m))
+    /// let long = len(wall.edges.by_length(least: 3.5m)) // => 2
+    /// ```
+    fn by_length(
+        /// Edges; lists of them flatten.
+        edges: Vec<Value>,
+        /// The least length.
+        least: Option<Length>,
+        /// The largest length.
+        most: Option<Length>,
+    ) -> Vec<EdgeOf> = |cx, edges, least, most| {
+        if least.is_none() && most.is_none() {
+            let (what, example) = ("`least:` or `most:`", "edges.by_length(least: 1m)");
+            return Err(ValueFault::Missing { function: "by_length", what, example }.into());
+        }
+        let tolerance = cx.tolerance()?;
+        let (least, most) = (least.map_or(0.0, |l| l.0), most.map_or(f64::INFINITY, |l| l.0));
+        choosing::by_length(cx, edges, |length| length >= least - tolerance.point && length <= most + tolerance.point)
+    };
+
+    /// The line of constant u or v of a surface, as a curve.
+    ///
+    /// It runs with the other parameter ascending and may join the network (`curve seam = iso(roof, u: 0.5)`); in a mesh
+    /// `of roof, seam` it lies on mesh lines. `roof.u(0.5)` and `roof.v(0.5)` say the same. It is exact on `extrude`,
+    /// `revolve`, `bezier_surface`, `nurbs_surface` and `grid`, along the straight lines of `ruled`, and on every surface for
+    /// its borders and the curves of its grid; elsewhere it is a cubic within a quarter of the tolerance.
+    /// ```loft
+    /// curve south = arc((0, 0, 0), (4m, 0, 0), through: (2m, 0, 1m))
+    /// surface roof = extrude(south, by: (0, 9m, 0))
+    /// curve ridge = iso(roof, v: 0.5)
+    /// let length = ridge.length // => 9000mm
+    /// ```
+    fn iso(
+        /// A surface.
+        of: Surface,
+        /// From 0 to 1; give this or `v`.
+        u: Option<f64>,
+        /// From 0 to 1.
+        v: Option<f64>,
+    ) -> Chain = |cx, of, u, v| match (u, v) {
+        (Some(u), None) => iso_line(cx, &of, IsoLine::U(u), "u"),
+        (None, Some(v)) => iso_line(cx, &of, IsoLine::V(v), "v"),
+        (Some(_), Some(_)) => {
+            Err(ValueFault::Exclusive {
+                function: "iso",
+                what: "a constant u or a constant v, not both",
+                arguments: vec!["u", "v"],
+                example: "iso(roof, u: 0.5)",
+            }
+            .into())
+        }
+        (None, None) => Err(ValueFault::Missing { function: "iso", what: "`u:` or `v:`", example: "iso(roof, u: 0.5)" }.into()),
+    };
+
+    /// The line of constant u of a surface, see `iso`.
+    ///
+    /// ```loft
+    /// curve south = line((0, 0, 0), (4m, 0, 0))
+    /// surface wall = extrude(south, by: (0, 0, 3m))
+    /// let belt = wall.u(0.5).length // => 4000mm
+    /// ```
+    fn u(
+        /// A surface.
+        of: Surface,
+        /// From 0 to 1.
+        at: f64,
+    ) -> Chain = |cx, of, at| iso_line(cx, &of, IsoLine::U(at), "at");
+
+    /// The line of constant v of a surface, see `iso`.
+    ///
+    /// ```loft
+    /// curve south = line((0, 0, 0), (4m, 0, 0))
+    /// surface wall = extrude(south, by: (0, 0, 3m))
+    /// let post = wall.v(0.5).length // => 3000mm
+    /// ```
+    fn v(
+        /// A surface.
+        of: Surface,
+        /// From 0 to 1.
+        at: f64,
+    ) -> Chain = |cx, of, at| iso_line(cx, &of, IsoLine::V(at), "at");
+
+    /// The unit normal of a surface at u and v.
+    ///
+    /// ```loft
+    /// curve south = line((0, 0, 0), (4m, 0, 0))
+    /// surface wall = extrude(south, by: (0, 0, 3m))
+    /// let n = wall.normal(0.5, 0.5)
+    /// ```
+    fn normal(
+        /// A surface.
+        of: Surface,
+        /// From 0 to 1.
+        u: f64,
+        /// From 0 to 1.
+        v: f64,
+    ) -> Direction = |_, of, u, v| {
+        let (u, v) = checked_uv(&of, (u, "u"), (v, "v"))?;
+        Ok(Direction(of.normal(u, v)))
+    };
+}
+
+fields! {
+    /// The patches of a surface: its smooth pieces.
+    fn patches(of: Surface) -> Vec<PatchOf> = |cx, of| {
+        let (home, _, patches) = patches(cx, &[of])?;
+        Ok(patches.into_iter().map(|p| PatchOf(home.clone(), p)).collect())
+    };
+    /// The edges of a surface, patch by patch along the border of each.
+    fn edges(of: Surface) -> Vec<EdgeOf> = |cx, of| edges(cx, &[of]);
+    /// The vertices of a surface: the corners of its patches.
+    fn vertices(of: Surface) -> Vec<VertexOf> = |cx, of| vertices(cx, &[of]);
+    /// For each patch of a surface the edges around it, in order.
+    fn loops(of: Surface) -> Vec<Vec<EdgeOf>> = |cx, of| loops(cx, &[of]);
+    /// The faces of a shell: the patches of its surfaces.
+    fn faces(of: Arc<ShellValue>) -> Vec<PatchOf> = |cx, of| {
+        let (home, _, patches) = patches(cx, &of.surfaces)?;
+        Ok(patches.into_iter().map(|p| PatchOf(home.clone(), p)).collect())
+    };
+    /// The edges of a shell, as they are after its faces were glued.
+    ///
+    /// They come by the faces of the shell as listed, then along the border of each face; where a long border meets several
+    /// shorter ones, each of these is an edge. `.faces` are the faces of the shell on it, one at a free edge.
+    fn edges(of: Arc<ShellValue>) -> Vec<EdgeOf> = |cx, of| Ok(skin(cx, &Faces::of_shell(of))?.0);
+    /// The vertices of a shell: the ends of its edges.
+    fn vertices(of: Arc<ShellValue>) -> Vec<VertexOf> = |cx, of| {
+        let (edges, mut seen) = (skin(cx, &Faces::of_shell(of))?.0, BTreeSet::new());
+        let ends = edges.iter().flat_map(|edge| [edge.1.ends.0, edge.1.ends.1].map(|vertex| VertexOf(edge.0.clone(), vertex)));
+        Ok(ends.filter(|vertex| seen.insert(vertex.1)).collect())
+    };
+    /// For each face of a shell the edges around it, in order.
+    fn loops(of: Arc<ShellValue>) -> Vec<Vec<EdgeOf>> = |cx, of| {
+        let (all, skin) = skin(cx, &Faces::of_shell(of))?;
+        Ok(skin.borders.iter().map(|(_, around)| picked(&all, around)).collect())
+    };
+    /// The free edges of a surface, a shell or a list of them, loop by loop.
+    ///
+    /// A tube has two rims of one edge each, a closed shell none. The first loop begins with the first free edge (`.edges`
+    /// says in which order they come), the next one with the first that is left.
+    fn rims(of: Edged) -> Vec<Vec<EdgeOf>> = |cx, Edged(of)| {
+        let (all, skin) = skin(cx, &of)?;
+        Ok(skin.rims().iter().map(|around| picked(&all, around)).collect())
+    };
+    /// Whether no edge of a shell is free.
+    fn closed(of: Arc<ShellValue>) -> bool = |cx, of| {
+        let module = cx.module();
+        Ok(cx.glued(module, &of)?.shell.closed)
+    };
+    /// The edges around a patch, in order.
+    fn edges(of: PatchOf) -> Vec<EdgeOf> = |cx, of| {
+        let model = cx.model(&of.0)?;
+        Ok(model.border_of(of.1).into_iter().map(|(e, _)| whole(&of.0, &model, e)).collect())
+    };
+    /// The corners of a patch.
+    fn vertices(of: PatchOf) -> Vec<VertexOf> = |cx, of| {
+        Ok(cx.model(&of.0)?.vertices_of(&[of.1]).into_iter().map(|v| VertexOf(of.0.clone(), v)).collect())
+    };
+    /// The surface a patch lies on.
+    fn surface(of: PatchOf) -> Surface = |cx, of| {
+        let model = cx.model(&of.0)?;
+        Ok(model.surfaces[model.patches[of.1.index()].surface.index()].surface.clone())
+    };
+    /// Arc length of an edge.
+    fn length(of: EdgeOf) -> Length = |_, of| Ok(Length(of.1.length()));
+    /// The patches on both sides of an edge.
+    fn faces(of: EdgeOf) -> Vec<PatchOf> = |_, of| Ok(of.1.faces.iter().map(|p| PatchOf(of.0.clone(), *p)).collect());
+    /// The two ends of an edge.
+    fn vertices(of: EdgeOf) -> Vec<VertexOf> = |_, of| Ok([of.1.ends.0, of.1.ends.1].map(|v| VertexOf(of.0.clone(), v)).to_vec());
+    /// The point halfway along an edge.
+    fn mid(of: EdgeOf) -> Point = |cx, of| Ok(Point(middle(cx, &of)?));
+    /// The curve that an edge lies on.
+    fn curve(of: EdgeOf) -> Chain = |cx, of| curve_of(cx, of);
+    /// The edges that end in a vertex.
+    fn edges(of: VertexOf) -> Vec<EdgeOf> = |cx, of| {
+        let model = cx.model(&of.0)?;
+        let ends = |e: &usize| model.edges[*e].vertices.0 == of.1 || model.edges[*e].vertices.1 == of.1;
+        Ok((0..model.edges.len()).filter(ends).map(|e| whole(&of.0, &model, EdgeId::at(e))).collect())
+    };
+    /// Where a vertex is.
+    fn point(of: VertexOf) -> Value = |cx, of| Ok(Value::point(cx.model(&of.0)?.vertices[of.1.index()].point));
+}

@@ -1,0 +1,5 @@
+//! A whole run: phases, what was not made, and what a script declares.
+
+pub mod phases;
+pub mod symbols;
+pub mod unmade;

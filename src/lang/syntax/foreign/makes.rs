@@ -1,0 +1,154 @@
+//! Which keyword declares what a function makes: the parser says so where a call stands alone.
+
+/// Functions that make curves.
+const CURVES: &[&str] = &[
+    "arc",
+    "bezier",
+    "bspline",
+    "chamfer",
+    "circle",
+    "conic",
+    "ellipse",
+    "fillet",
+    "helix",
+    "iso",
+    "line",
+    "parabola",
+    "polyline",
+    "polynomial_curve",
+    "project",
+    "spline",
+    "u",
+    "v",
+];
+/// Functions that make surfaces.
+const SURFACES: &[&str] = &[
+    "along",
+    "bezier_surface",
+    "coons",
+    "extrude",
+    "gordon",
+    "grid",
+    "join",
+    "nurbs_surface",
+    "polynomial",
+    "revolve",
+    "ruled",
+    "scatter",
+    "skin",
+    "sweep",
+    "transfinite",
+    "trim",
+];
+/// Functions that make something else.
+const OTHERS: &[&str] = &[
+    "abs",
+    "acos",
+    "acosh",
+    "all",
+    "angle",
+    "any",
+    "asin",
+    "asinh",
+    "at",
+    "atan",
+    "atan2",
+    "blend",
+    "box",
+    "by_length",
+    "ceil",
+    "colored",
+    "column",
+    "cones",
+    "connection",
+    "contains",
+    "cos",
+    "cosh",
+    "creases",
+    "cross",
+    "cylinders",
+    "deviation",
+    "distance",
+    "dot",
+    "edge",
+    "error",
+    "exp",
+    "fit",
+    "flatten",
+    "floor",
+    "imprint",
+    "inside",
+    "len",
+    "lerp",
+    "linspace",
+    "log",
+    "max",
+    "mean",
+    "meet",
+    "mid",
+    "min",
+    "mirror",
+    "mod",
+    "move",
+    "named",
+    "nearest",
+    "norm",
+    "normal",
+    "nurbs",
+    "offset",
+    "on",
+    "others",
+    "pi",
+    "plane",
+    "planes",
+    "points",
+    "reverse",
+    "rotate",
+    "round",
+    "scale",
+    "section",
+    "sign",
+    "sin",
+    "sinh",
+    "sort",
+    "spheres",
+    "split",
+    "sqrt",
+    "sum",
+    "tan",
+    "text",
+    "thicken",
+    "tori",
+    "unit",
+    "zip",
+];
+
+/// A function by its name, with the keyword that declares its result: `curve`, `surface`, else `let`; `None` where there is none.
+pub(crate) fn keyword_of(function: &str) -> Option<(&'static str, &'static str)> {
+    let words = [("curve", CURVES), ("surface", SURFACES), ("let", OTHERS)];
+    words.into_iter().find_map(|(word, all)| all.iter().find(|name| **name == function).map(|name| (*name, word)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lang::eval::std::builtins;
+    use crate::lang::values::types::Ty;
+
+    #[test]
+    fn each_function_has_the_keyword_of_its_type() {
+        for builtin in builtins() {
+            let word = match builtin.returns {
+                Ty::Curve => "curve",
+                Ty::Surface => "surface",
+                _ => "let",
+            };
+            assert_eq!(keyword_of(builtin.name), Some((builtin.name, word)));
+        }
+        let all = CURVES.len() + SURFACES.len() + OTHERS.len();
+        let mut names: Vec<&str> = builtins().map(|builtin| builtin.name).collect();
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(all, names.len());
+    }
+}
