@@ -18,7 +18,7 @@ use lofting::network::flow_chains::{ChainFlow, of_chains};
 use lofting::network::graph::Input as NetInput;
 use lofting::network::{Chain, Network};
 use lofting::surface::Reparam;
-use lofting::surface::coons::{self, Grid, Method, Settings};
+use lofting::surface::blended::coons::{self, Grid, Method, Settings};
 
 /// Two arcs and two splines round a square of 100.
 fn border() -> [Curve; 4] {

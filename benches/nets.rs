@@ -15,8 +15,12 @@ use lofting::geometry::{Motion, build};
 use lofting::model::measure;
 use lofting::network::Chain;
 use lofting::surface::Surface;
-use lofting::surface::skin::{Across, Leaving, Section, Settings, skin};
-use lofting::surface::sweeps::{Input, Law, Method, sweep};
+use lofting::surface::blended::skin::{Across, Settings, skin};
+use lofting::surface::blended::skin_align::Section;
+use lofting::surface::blended::skin_ends::Leaving;
+use lofting::surface::swept::laws::Law;
+use lofting::surface::swept::sweep::sweep;
+use lofting::surface::swept::sweep_input::{Input, Method};
 use networks::{Curve, NETWORKS, as_given, network};
 
 fn through(points: &[DVec3]) -> Chain {

@@ -11,8 +11,8 @@ use lofting::geometry::build::{arc_through, spline};
 use lofting::geometry::{Ends, Spline};
 use lofting::model::measure;
 use lofting::network::{Chain, ChainFlow, of_chains};
-use lofting::surface::coons::{Grid, Method, Settings, build};
-use lofting::surface::nurbs::{Net, nurbs};
+use lofting::surface::blended::coons::{Grid, Method, Settings, build};
+use lofting::surface::points::control_net::{Net, nurbs};
 use lofting::surface::{Nearest, Reparam, Surface, foot_within};
 
 /// Two arcs and two splines round a square of side 100.

@@ -14,13 +14,13 @@ use lofting::mesh::{Elements, FaceRange, Input, Mesh, Method as MeshMethod, Plan
 use lofting::model::topology::Named;
 use lofting::model::{Model, SurfaceId};
 use lofting::network::{Chain, ChainFlow, Network, of_chains};
-use lofting::surface::coons::{Grid, Method, Settings, build};
-use lofting::surface::gordon::{CurveNet, Named as NamedNet, gordon};
-use lofting::surface::nurbs::{Net, bezier, nurbs};
-use lofting::surface::revolve::Axis;
-use lofting::surface::{
-    Domain, Map, OneSided, Rail, Reparam, Surface, SurfaceKind, Way, bbox, carried, closest, divide, extrude, plane, revolve, ruled, trim,
-};
+use lofting::surface::blended::coons::{Grid, Method, Settings, build};
+use lofting::surface::blended::gordon::{CurveNet, Named as NamedNet, gordon};
+use lofting::surface::core::plane;
+use lofting::surface::points::control_net::{Net, bezier, nurbs};
+use lofting::surface::swept::extrude;
+use lofting::surface::swept::revolve::{self, Axis};
+use lofting::surface::{Domain, Map, OneSided, Rail, Reparam, Surface, SurfaceKind, Way, bbox, carried, closest, divide, ruled, trim};
 use serde_json::Value;
 
 fn p(x: f64, y: f64, z: f64) -> DVec3 {

@@ -8,7 +8,7 @@ use lofting::base::tolerance::Tolerance;
 use lofting::model::measure::area_within;
 use lofting::session::disk::{Disk, Outputs};
 use lofting::surface::Surface;
-use lofting::surface::gordon::NetCheck;
+use lofting::surface::blended::gordon::NetCheck;
 
 use crate::support::networks::{NETWORKS, as_given, network, surface};
 use crate::support::script;

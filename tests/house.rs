@@ -22,6 +22,25 @@ const FLOORS: &[(&str, u8)] = &[
 /// Rooms of a floor in their order: each imports only from rooms before it.
 const ROOMS: &[(&str, &[&str])] = &[
     (
+        "surface",
+        &[
+            "data",
+            "rails",
+            "shapes",
+            "core",
+            "closest",
+            "trims",
+            "points",
+            "blended",
+            "swept",
+            "joined",
+            "analysis",
+            "intersect",
+            "offset",
+            "rolling",
+        ],
+    ),
+    (
         "mesh",
         &[
             "request",
@@ -82,7 +101,7 @@ const CEILINGS: &[(&str, usize)] = &[
     ("base", 9_000),
     ("geometry", 5_650),
     ("network", 3_800),
-    ("surface", 25_400),
+    ("surface", 25_750),
     ("model", 6_400),
     ("mesh", 24_300),
     ("io", 16_800),

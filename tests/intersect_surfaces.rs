@@ -10,10 +10,11 @@ use lofting::base::tolerance::Tolerance;
 use lofting::geometry::build;
 use lofting::geometry::curve::Shape;
 use lofting::network::Chain;
-use lofting::surface::meet;
-use lofting::surface::nurbs::{self, Net};
-use lofting::surface::revolve::{Axis, revolve};
-use lofting::surface::{Nearest, Surface, divide, extrude, plane};
+use lofting::surface::core::plane;
+use lofting::surface::intersect::{with_curve, with_surfaces};
+use lofting::surface::points::control_net::{self, Net};
+use lofting::surface::swept::revolve::{Axis, revolve};
+use lofting::surface::{Nearest, Surface, divide, extrude};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 
@@ -43,7 +44,7 @@ fn ball() -> Surface {
 fn sheet(heights: &[f64]) -> Surface {
     let row = |j: usize| (0..4).map(|i| DVec3::new(i as f64 / 3.0, j as f64 / 3.0, heights[4 * j + i])).collect();
     let rows: Vec<Vec<DVec3>> = (0..4).map(row).collect();
-    nurbs::bezier(&Net { rows: &rows, weights: None }, Origin::NONE, &tolerance()).unwrap()
+    control_net::bezier(&Net { rows: &rows, weights: None }, Origin::NONE, &tolerance()).unwrap()
 }
 
 fn vector(reach: f64) -> impl Strategy<Value = DVec3> {
@@ -70,7 +71,7 @@ fn lines_meet_spheres_where_the_closed_form_says() {
         // Near a touch, or with an end on the sphere, the tolerance decides.
         prop_assume!(length > 0.1 && (closest.length() - 1.0).abs() > 1e-4);
         prop_assume!((a.length() - 1.0).abs() > 1e-4 && (b.length() - 1.0).abs() > 1e-4);
-        let found = meet::with_curve(&line, from_ref(&ball), &tolerance()).unwrap();
+        let found = with_curve::with_curve(&line, from_ref(&ball), &tolerance()).unwrap();
         let wanted = on_sphere(a, b);
         prop_assert_eq!(found.len(), wanted.len());
         for (m, f) in found.iter().zip(&wanted) {
@@ -90,7 +91,7 @@ fn a_touch_is_one_meeting() {
         for way in [DVec3::X, DVec3::Y, DVec3::new(0.6, 0.8, 0.0)] {
             for up in [DVec3::Z, DVec3::new(-way.y, way.x, 0.0), DVec3::NEG_Z] {
                 let line = chain(up * height - way * 1.3, up * height + way * 1.7);
-                let found = meet::with_curve(&line, from_ref(&ball), &tolerance()).unwrap();
+                let found = with_curve::with_curve(&line, from_ref(&ball), &tolerance()).unwrap();
                 assert_eq!(found.len(), count, "{turn} {way} {up}: {found:?}");
             }
         }
@@ -104,7 +105,7 @@ fn lines_meet_bicubics_as_often_as_dense_samples_say() {
     let run = runner(100).run(&(heights, 0.05..0.95_f64, 0.05..0.95_f64, -0.2..0.2_f64, -0.2..0.2_f64), |(heights, y0, y1, z0, z1)| {
         let sheet = sheet(&heights);
         let (a, b) = (DVec3::new(-0.1, y0, z0), DVec3::new(1.1, y1, z1));
-        let found = meet::with_curve(&chain(a, b), from_ref(&sheet), &tolerance()).unwrap();
+        let found = with_curve::with_curve(&chain(a, b), from_ref(&sheet), &tolerance()).unwrap();
         // Over the unit square the surface is z(x, y) with u = x, v = y.
         let height = |k: usize| {
             let p = a.lerp(b, k as f64 / 4000.0);
@@ -127,10 +128,10 @@ fn a_curve_on_a_surface_is_one_stretch() {
     let flat = plane::unbounded(DVec3::ZERO, DVec3::Z, Origin::NONE).unwrap();
     let circle = |normal: DVec3| Chain::of_curve(&build::circle(DVec3::ZERO, 1.0, normal, Origin::NONE).unwrap());
     for normal in [DVec3::Z, DVec3::X, DVec3::new(1.0, 2.0, 3.0).normalize()] {
-        let found = meet::with_curve(&circle(normal), from_ref(&ball), &tolerance()).unwrap();
+        let found = with_curve::with_curve(&circle(normal), from_ref(&ball), &tolerance()).unwrap();
         assert!(matches!(found.as_slice(), [m] if m.f == 0.0 && m.shared_to == Some(1.0)), "{normal}: {found:?}");
     }
-    let found = meet::with_curve(&circle(DVec3::Z), &[flat], &tolerance()).unwrap();
+    let found = with_curve::with_curve(&circle(DVec3::Z), &[flat], &tolerance()).unwrap();
     assert!(matches!(found.as_slice(), [m] if m.shared_to == Some(1.0)), "{found:?}");
 }
 
@@ -145,7 +146,7 @@ fn flat(at: DVec3, normal: DVec3) -> Surface {
 }
 
 fn cut(a: &Surface, b: &Surface) -> Vec<Chain> {
-    meet::with_surfaces(from_ref(a), from_ref(b), Origin::NONE, &tolerance()).unwrap().curves
+    with_surfaces::with_surfaces(from_ref(a), from_ref(b), Origin::NONE, &tolerance()).unwrap().curves
 }
 
 /// Every one of many places of each curve is on both surfaces, within the quarter of the tolerance that is promised.
@@ -196,7 +197,7 @@ fn seams_and_poles_are_nothing_special() {
             assert_on_both(&curves, [&ball, &plane]);
         }
         for sign in [1.0, -1.0] {
-            let common = meet::with_surfaces(from_ref(&ball), &[flat(normal * sign, normal)], Origin::NONE, &tolerance()).unwrap();
+            let common = with_surfaces::with_surfaces(from_ref(&ball), &[flat(normal * sign, normal)], Origin::NONE, &tolerance()).unwrap();
             assert!(common.curves.is_empty() && common.touches.len() == 1, "{normal}: {common:?}");
             assert!(common.touches[0].distance(normal * sign) < 1e-3);
         }
@@ -231,7 +232,7 @@ fn tubes_cross_tubes() {
         assert_on_both(&curves, [&a, &b]);
     }
     let b = tube(DVec3::X, 1.0, 4.0);
-    match meet::with_surfaces(from_ref(&a), from_ref(&b), Origin::NONE, &tolerance()) {
+    match with_surfaces::with_surfaces(from_ref(&a), from_ref(&b), Origin::NONE, &tolerance()) {
         Ok(common) => {
             // Semi-axes 1 and √2.
             let length: f64 = common.curves.iter().map(Chain::length).sum();
@@ -246,7 +247,7 @@ fn tubes_cross_tubes() {
 fn surfaces_on_each_other_are_told() {
     let a = tube(DVec3::Z, 1.0, 4.0);
     for b in [tube(DVec3::Z, 1.0, 3.0), flat(DVec3::X, DVec3::X), tube(DVec3::Z, 1.0, 4.0)] {
-        let fault = meet::with_surfaces(from_ref(&a), &[b], Origin::NONE, &tolerance()).unwrap_err();
+        let fault = with_surfaces::with_surfaces(from_ref(&a), &[b], Origin::NONE, &tolerance()).unwrap_err();
         assert_eq!(fault.code().0, "E657", "{fault}");
     }
 }

@@ -6,8 +6,8 @@ use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
 use lofting::geometry::build::line;
 use lofting::network::Chain;
-use lofting::surface::nurbs::{Net, nurbs};
-use lofting::surface::revolve::{Axis, revolve};
+use lofting::surface::points::control_net::{Net, nurbs};
+use lofting::surface::swept::revolve::{Axis, revolve};
 use lofting::surface::{Nearest, OneSided, Surface, join};
 
 use crate::support::random::{Random, cases};

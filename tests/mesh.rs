@@ -17,9 +17,9 @@ use lofting::model::{Model, ShellRequest, SurfaceId};
 use lofting::network::flow_chains::{ChainFlow, of_chains};
 use lofting::network::graph::Input as NetInput;
 use lofting::network::{Chain, Network};
-use lofting::surface::coons::{Grid, Method, Settings};
-use lofting::surface::revolve::{axis_of, revolve};
-use lofting::surface::{Reparam, Surface, coons};
+use lofting::surface::blended::coons::{self, Grid, Method, Settings};
+use lofting::surface::swept::revolve::{axis_of, revolve};
+use lofting::surface::{Reparam, Surface};
 
 fn p(x: f64, y: f64, z: f64) -> DVec3 {
     DVec3::new(x, y, z)

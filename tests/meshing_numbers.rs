@@ -14,7 +14,8 @@ use lofting::mesh::quad::net::Net;
 use lofting::mesh::quad::smooth::Smoother;
 use lofting::network::Chain;
 use lofting::session::live::{Depth, Live};
-use lofting::surface::{closest, plane, polynomial, trim};
+use lofting::surface::core::plane;
+use lofting::surface::{closest, polynomial, trim};
 use serde_json::Value;
 
 use crate::support::reference::reference;

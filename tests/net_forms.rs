@@ -7,9 +7,14 @@ use lofting::base::tolerance::Tolerance;
 use lofting::geometry::build::{arc_center, circle, line};
 use lofting::geometry::spline::{Ends, Spline, spline};
 use lofting::network::Chain;
-use lofting::surface::revolve::Axis;
-use lofting::surface::skin::{Across, Leaving, Section, Settings, skin};
-use lofting::surface::sweeps::{AlongSettings, Input, Law, Method, along, sweep};
+use lofting::surface::blended::skin::{Across, Settings, skin};
+use lofting::surface::blended::skin_align::Section;
+use lofting::surface::blended::skin_ends::Leaving;
+use lofting::surface::swept::along::{Settings as AlongSettings, along};
+use lofting::surface::swept::laws::Law;
+use lofting::surface::swept::revolve::Axis;
+use lofting::surface::swept::sweep::sweep;
+use lofting::surface::swept::sweep_input::{Input, Method};
 use lofting::surface::{NetForm, Off, Surface, extrude, revolve};
 
 use crate::support::networks::{NETWORKS, as_given};

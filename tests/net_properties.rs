@@ -13,9 +13,14 @@ use lofting::geometry::Motion;
 use lofting::geometry::build::{arc_center, circle_start, line};
 use lofting::geometry::spline::{Ends, Spline, spline};
 use lofting::network::Chain;
-use lofting::surface::skin::{Across, Leaving, Section, Settings, skin};
-use lofting::surface::sweeps::{Input, Law, Method, sweep};
-use lofting::surface::{Closest, Nearest, Surface, extrude, revolve};
+use lofting::surface::blended::skin::{Across, Settings, skin};
+use lofting::surface::blended::skin_align::Section;
+use lofting::surface::blended::skin_ends::Leaving;
+use lofting::surface::swept::laws::Law;
+use lofting::surface::swept::revolve;
+use lofting::surface::swept::sweep::sweep;
+use lofting::surface::swept::sweep_input::{Input, Method};
+use lofting::surface::{Closest, Nearest, Surface, extrude};
 
 use crate::support::networks;
 use crate::support::random;

@@ -18,7 +18,8 @@ use lofting::model::topology::Named;
 use lofting::model::{Model, SurfaceId};
 use lofting::network::graph::Input as NetInput;
 use lofting::network::{Chain, Network};
-use lofting::surface::{Surface, plane};
+use lofting::surface::Surface;
+use lofting::surface::blended::plane_face;
 
 use crate::support::script;
 
@@ -48,7 +49,7 @@ fn scene_with(faces: usize, inner: Vec<Curve>) -> Scene {
     let curves: Vec<Curve> = [(0, 1), (1, 2), (2, 3), (3, 0), (1, 4), (4, 5), (5, 2)].into_iter().map(|(a, b)| side(a, b)).collect();
     let over = |which: &[usize]| -> Surface {
         let chains: Vec<Chain> = which.iter().map(|k| Chain::of_curve(&curves[*k])).collect();
-        plane::bounded(&chains, Origin::NONE, &tolerance()).unwrap().0
+        plane_face::bounded(&chains, Origin::NONE, &tolerance()).unwrap().0
     };
     let surfaces = [over(&[0, 1, 2, 3]), over(&[1, 4, 5, 6])];
     let lines: Vec<Chain> = inner.iter().map(Chain::of_curve).collect();

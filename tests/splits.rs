@@ -13,8 +13,11 @@ use lofting::geometry::build::{arc_through, circle, line, polyline, spline};
 use lofting::geometry::{Curve, Ends, Spline};
 use lofting::model::measure;
 use lofting::network::Chain;
-use lofting::surface::revolve::Axis;
-use lofting::surface::{Surface, Way, carried, extrude, meet, plane, revolve, split, trim};
+use lofting::surface::blended::plane_face;
+use lofting::surface::core::plane;
+use lofting::surface::intersect::with_surfaces;
+use lofting::surface::swept::revolve::Axis;
+use lofting::surface::{Surface, Way, carried, extrude, revolve, split, trim};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestCaseResult, TestRng, TestRunner};
 
@@ -272,7 +275,7 @@ fn parts_of_a_face_with_holes_are_the_face_again() {
     let round = (-1.2_f64..1.2, -1.2_f64..1.2, 0.1_f64..0.9);
     let straight = (-0.9_f64..0.9, 0.0_f64..PI);
     let strategy = (proptest::collection::vec(round, 0..3), proptest::collection::vec(straight, 0..3), any::<bool>());
-    let (flat, _) = plane::bounded(&[disc(0.0, 0.0, 1.0)], o, &tolerance()).unwrap();
+    let (flat, _) = plane_face::bounded(&[disc(0.0, 0.0, 1.0)], o, &tolerance()).unwrap();
     let holed = trim(&flat, &[], &[vec![disc(0.3, 0.1, 0.3)], vec![disc(-0.5, 0.2, 0.15)]], o, &tolerance()).unwrap();
     check(60, &strategy, |(loops, lines, whole)| {
         let base = if whole { &flat } else { &holed };
@@ -353,7 +356,7 @@ fn planes_beside_seams_poles_and_tangents_part_a_surface() {
             true => TestCaseError::fail(format!("{fault:?}: {what:?}")),
             false => TestCaseError::reject("refused"),
         };
-        let cutters = meet::with_surfaces(std::slice::from_ref(surface), &[flat], Origin::NONE, &tolerance).map_err(fault)?.curves;
+        let cutters = with_surfaces::with_surfaces(std::slice::from_ref(surface), &[flat], Origin::NONE, &tolerance).map_err(fault)?.curves;
         if cutters.is_empty() {
             return Err(TestCaseError::reject("no cut"));
         }

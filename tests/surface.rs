@@ -9,10 +9,12 @@ use lofting::geometry::{Curve, Ends, Motion, Spline};
 use lofting::model::measure;
 use lofting::network::flow::Member;
 use lofting::network::{Chain, ChainFlow, Flow, FlowKind, of_chains};
-use lofting::surface::coons::{Grid, Method, Settings, build};
-use lofting::surface::interpolate::{Tangents, fitted};
-use lofting::surface::revolve::Axis;
-use lofting::surface::{Domain, Nearest, NurbsSurface, OneSided, Reparam, Side, Surface, axis_of, extrude, plane, revolve, ruled};
+use lofting::surface::blended::coons::{Grid, Method, Settings, build};
+use lofting::surface::blended::plane_face;
+use lofting::surface::points::interpolate::{Tangents, fitted};
+use lofting::surface::swept::extrude;
+use lofting::surface::swept::revolve::{self, Axis};
+use lofting::surface::{Domain, Nearest, NurbsSurface, OneSided, Reparam, Side, Surface, axis_of, extrude, revolve, ruled};
 use serde_json::Value;
 
 use crate::support::reference::reference;
@@ -569,7 +571,7 @@ fn ends_over_the_border_are_trimmed_with_a_note() {
 #[test]
 fn planes_between_curves() {
     let t = tolerance();
-    let slab = |chains: &[Chain]| plane::bounded(chains, Origin::NONE, &t);
+    let slab = |chains: &[Chain]| plane_face::bounded(chains, Origin::NONE, &t);
     let code = |chains: &[Chain]| slab(chains).unwrap_err().code().0;
     let p = |x: f64, y: f64| [x, y, 0.5];
     let four = [
@@ -690,7 +692,7 @@ fn areas_volumes_and_moments_of_known_bodies() {
 
     // A disc without a map, and a half disc with one, by their borders.
     let disc = Chain::of_curve(&circle(o, 2.0, DVec3::Z, Origin::NONE).unwrap());
-    let flat = plane::bounded(std::slice::from_ref(&disc), Origin::NONE, &t).unwrap().0;
+    let flat = plane_face::bounded(std::slice::from_ref(&disc), Origin::NONE, &t).unwrap().0;
     let properties = measure::sheet(std::slice::from_ref(&flat));
     near(properties.area, 4.0 * pi, "area of a disc");
     close(properties.centroid, o, 1e-12, "centroid of a disc");
@@ -698,12 +700,12 @@ fn areas_volumes_and_moments_of_known_bodies() {
     near(properties.inertia.x_axis.x, 4.0 * pi, "inertia of a disc");
     close(measure::bounds(&[flat]).max, o + DVec3::new(2.0, 2.0, 0.0), 1e-9, "box of a disc");
     let half = [straight([-1.0, 2.0, 0.0], [3.0, 2.0, 0.0]), disc.slice(0.0, 0.5, &t).unwrap()];
-    near(measure::area(&plane::bounded(&half, Origin::NONE, &t).unwrap().0), 2.0 * pi, "area of a half disc");
+    near(measure::area(&plane_face::bounded(&half, Origin::NONE, &t).unwrap().0), 2.0 * pi, "area of a half disc");
 
     // A cylinder with two lids: lids and wall together are closed.
     let up = DVec3::new(0.0, 0.0, 5.0);
     let wall = extrude(&disc, up, Origin::NONE, &t).unwrap();
-    let lid = plane::bounded(std::slice::from_ref(&disc), Origin::NONE, &t).unwrap().0;
+    let lid = plane_face::bounded(std::slice::from_ref(&disc), Origin::NONE, &t).unwrap().0;
     let top = lid.moved(&Motion::translation(up));
     let can = measure::solid(&[(wall, true), (lid, true), (top, false)]);
     near(can.volume, 20.0 * pi, "volume of a can");
@@ -742,7 +744,7 @@ fn nearest_points_of_surfaces() {
     }
     // Flat faces: inside the foot, outside the border; a bilinear patch at its border and inside.
     let disc = Chain::of_curve(&circle(DVec3::ZERO, 2.0, DVec3::Z, Origin::NONE).unwrap());
-    let flat = plane::bounded(&[disc], Origin::NONE, &t).unwrap().0;
+    let flat = plane_face::bounded(&[disc], Origin::NONE, &t).unwrap().0;
     for (p, distance) in [(DVec3::new(0.3, 0.4, 2.0), 2.0), (DVec3::new(6.0, 8.0, 0.0), 8.0), (DVec3::new(3.2, 2.4, 2.0), 8f64.sqrt())] {
         assert!((lofting::surface::closest(&flat, p).distance - distance).abs() < 1e-9, "{p}");
     }

@@ -9,8 +9,12 @@ use lofting::geometry::Motion;
 use lofting::geometry::build::{arc_center, line};
 use lofting::geometry::spline::{Ends, Spline, spline};
 use lofting::network::Chain;
-use lofting::surface::sweeps::{AlongSettings, Input, Law, Method, along, sweep};
-use lofting::surface::{Surface, extrude, revolve};
+use lofting::surface::swept::along::{Settings as AlongSettings, along};
+use lofting::surface::swept::laws::Law;
+use lofting::surface::swept::revolve;
+use lofting::surface::swept::sweep::sweep;
+use lofting::surface::swept::sweep_input::{Input, Method};
+use lofting::surface::{Surface, extrude};
 
 use crate::support::surfaces;
 

@@ -21,7 +21,7 @@ use lofting::model::measure;
 use lofting::network::Chain;
 use lofting::session::disk::{Disk, Outputs};
 use lofting::session::guard::guarded;
-use lofting::surface::revolve::Axis;
+use lofting::surface::swept::revolve::Axis;
 use lofting::surface::{Ground as Speaks, Outlined, extrude, outlined, revolve};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestCaseResult, TestRng, TestRunner};

@@ -8,7 +8,7 @@ use lofting::base::tolerance::Tolerance;
 use lofting::geometry::build;
 use lofting::model::measure;
 use lofting::network::Chain;
-use lofting::surface::walls::thicken;
+use lofting::surface::offset::thicken::thicken;
 use lofting::surface::{Surface, closest, grid, offset};
 
 use crate::support::random::{Random, cases};
@@ -93,7 +93,7 @@ fn walls_of_turned_profiles_enclose_what_steiner_says() {
     for case in 0..cases(200) {
         // A cone, or a part of a sphere between its poles.
         let (r, h, t) = (between(&mut random, 3.0, 6.0), between(&mut random, 2.0, 8.0), between(&mut random, 0.1, 1.0));
-        let axis = lofting::surface::revolve::Axis { about: DVec3::ZERO, direction: DVec3::Z };
+        let axis = lofting::surface::swept::revolve::Axis { about: DVec3::ZERO, direction: DVec3::Z };
         let sphere = case % 2 == 1;
         let profile = if sphere {
             build::arc_through(DVec3::new(0.0, 0.0, -r), DVec3::new(0.0, 0.0, r), DVec3::new(r, 0.0, 0.0), Origin::NONE).unwrap()

@@ -14,8 +14,10 @@ use crate::lang::values::units::radians;
 use crate::model::measure;
 use crate::network::{self, Chain, ChainFlow};
 use crate::session::report::DiagnosticRow;
-use crate::surface::coons::{self, Grid, Method, Settings};
-use crate::surface::skin::{self, Across, Leaving, Section};
+use crate::surface::blended::coons::{self, Grid, Method, Settings};
+use crate::surface::blended::skin::{self, Across};
+use crate::surface::blended::skin_align::Section;
+use crate::surface::blended::skin_ends::Leaving;
 use crate::surface::{self, Domain, Reparam};
 
 /// A surface over parameters u and v. Cheap to clone.
@@ -88,7 +90,7 @@ impl Surface {
     /// A flat face inside curves that close.
     pub fn plane<'a>(curves: impl IntoIterator<Item = &'a Curve>, tolerance: &Tolerance) -> Result<Self, Error> {
         let curves = curves.into_iter().cloned().collect();
-        made(curves, tolerance, |chains| surface::plane::bounded(chains, fresh(), tolerance))
+        made(curves, tolerance, |chains| surface::blended::plane_face::bounded(chains, fresh(), tolerance))
     }
 
     /// What a curve leaves when it is moved along a vector.
@@ -105,7 +107,7 @@ impl Surface {
         degrees: f64,
         tolerance: &Tolerance,
     ) -> Result<Self, Error> {
-        let axis = surface::revolve::Axis { about: place("about", about)?, direction: direction("axis", axis)? };
+        let axis = surface::swept::revolve::Axis { about: place("about", about)?, direction: direction("axis", axis)? };
         let angle = radians(degrees);
         made(vec![profile.clone()], tolerance, |chains| Ok((surface::revolve(&chains[0], &axis, angle, fresh(), tolerance)?, Vec::new())))
     }

@@ -12,7 +12,7 @@ use crate::base::origin::Origin;
 use crate::base::par;
 use crate::base::tolerance::Tolerance;
 use crate::network::{Chain, Network, meet};
-use crate::surface::meet::with_surfaces;
+use crate::surface::intersect::with_surfaces::with_surfaces;
 
 /// Curves and points that faces have in common beside the edges that they share.
 #[derive(Clone, Debug, Default)]

@@ -14,7 +14,7 @@ use crate::base::origin::Origin;
 use crate::base::par;
 use crate::base::tolerance::{MEASURE_ACCURACY, Tolerance};
 use crate::network::{Chain, Network};
-use crate::surface::meet::with_curve;
+use crate::surface::intersect::with_curve::with_curve;
 use crate::surface::{Domain, Nearest, Surface, split, with_loops};
 
 /// Places along a curve at which it is compared with another one.

@@ -8,7 +8,7 @@ use crate::base::quadrature::gauss_legendre;
 use crate::base::tolerance::EPSILON;
 use crate::base::work;
 use crate::network::Chain;
-use crate::surface::quick::PowerForm;
+use crate::surface::core::power_form::PowerForm;
 use crate::surface::{Jet2, Side, Surface, chain_breaks};
 
 /// Points of the rules along a border, the first pair for runs between breaks only, and across the surface.

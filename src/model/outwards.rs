@@ -14,7 +14,8 @@ use crate::base::tolerance::Tolerance;
 use crate::geometry::build::line;
 use crate::network::Chain;
 use crate::surface::Surface;
-use crate::surface::meet::{with_curve, with_surfaces};
+use crate::surface::intersect::with_curve::with_curve;
+use crate::surface::intersect::with_surfaces::with_surfaces;
 
 /// Points of a skin that are tried before it counts as not inside another one: those on that one do not tell.
 const POINTS: usize = 16;

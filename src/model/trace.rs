@@ -9,7 +9,7 @@ use crate::base::job;
 use crate::base::quadrature::{self, RUNNING};
 use crate::base::tolerance::{EPSILON, MEASURE_ACCURACY, NEWTON_STEP, Tolerance};
 use crate::network::{Chain, Network};
-use crate::surface::quick::PowerForm;
+use crate::surface::core::power_form::PowerForm;
 use crate::surface::{OneSided, Surface};
 
 /// Halvings of one stretch before its length is taken as it is; the line is cut at kinks, so this is far from reached.
@@ -255,7 +255,7 @@ impl Track {
 mod tests {
     use super::*;
     use crate::base::origin::Origin;
-    use crate::surface::nurbs::{Net, nurbs};
+    use crate::surface::points::control_net::{Net, nurbs};
 
     #[test]
     fn a_short_span_between_knots_counts() {

@@ -1,102 +1,67 @@
-//! Floor 3: surfaces, one file per kind. Built from chains; knows nothing of patches, meshes or text.
+//! Floor 3: surfaces. Built from chains; knows nothing of patches, meshes or text.
+//!
+//! A room imports only from rooms before it:
+//!
+//! - [`data`]: jets, domains, kinds, bounds, breaks
+//! - [`rails`]: curves under a parameter, sides, closed boundaries, borders in (u, v)
+//! - [`shapes`]: blended curves, nets, profiles in motion, heights, each by itself
+//! - [`mod@core`]: a surface of any shape, with its borders, loops and bounds
+//! - [`mod@closest`]: feet, nearest points, inside or outside, boxes
+//! - [`trims`]: curves on surfaces and the parts that they divide them into
+//! - [`points`]: surfaces from control nets, grids and scattered points
+//! - [`blended`]: Coons and Gordon surfaces, ruled ones, plane faces, skins
+//! - [`swept`]: extrusions, revolutions, sweeps
+//! - [`joined`]: several surfaces as one
+//! - [`analysis`]: surfaces as nets, their lines, simple forms, reports, validation
+//! - [`intersect`]: with curves, each other and themselves
+//! - [`mod@offset`]: surfaces at a distance, and walls
+//! - [`mod@rolling`]: blends of a rolling ball
 
-mod as_net;
-mod blend;
-mod blend_enclosure;
-mod breaks;
-mod cardinal;
-pub mod carry;
-mod cells;
+pub mod analysis;
+pub mod blended;
 pub mod closest;
-mod closest_swept;
-mod compose;
-pub mod coons;
 pub mod core;
-mod curve_extent;
-mod descent;
-mod divide;
-pub mod elementary;
-mod enclosure;
-mod evened;
-mod extent;
-pub mod extrude;
-mod faces;
-pub mod fit;
-mod flow_words;
-mod foot;
-pub mod gordon;
-mod holes;
-mod inside;
-pub mod interpolate;
-mod iso;
-mod iso_fit;
-mod joined;
-mod line;
-mod lone;
-pub mod looks;
-mod loops;
-pub mod meet;
-mod mixed;
-mod net_enclosure;
-pub mod net_report;
-pub mod nurbs;
-mod offset;
-mod outlined;
-mod pcurve;
-pub mod plane;
-mod polynomial;
-pub mod quick;
-mod rail;
-mod reparam;
-mod review;
-pub mod revolve;
-mod ring;
-mod rolling;
-mod ruled;
-mod samples;
-mod scatter;
-mod shape;
-mod shared_runs;
-pub mod skin;
-mod skin_align;
-mod skin_ends;
-mod skin_fit;
-mod square;
-mod strands;
-mod sweep;
-pub mod sweeps;
-mod thirds;
-mod trilateral;
-mod trilateral_enclosure;
-mod trim;
-mod trimmed_extent;
-mod turned;
-pub mod walls;
-mod weights;
+pub mod data;
+pub mod intersect;
+pub mod joined;
+pub mod offset;
+pub mod points;
+pub mod rails;
+pub mod rolling;
+pub mod shapes;
+pub mod swept;
+pub mod trims;
 
-pub use as_net::{NetForm, Off};
-pub use breaks::chain_breaks;
-pub use carry::{Way, carried};
-pub use closest::{Closest, Nearest, closest};
-pub use core::{Domain, Jet2, Side, Surface, SurfaceKind};
-pub use curve_extent::curve_bbox;
-pub use divide::{divide, split};
-pub use enclosure::{Enclosure, Strip};
-pub use evened::Evened;
-pub use extent::{Boxed, bbox, boxed};
-pub use extrude::extrude;
-pub use foot::{foot_within, step};
-pub use holes::{trim, with_loops};
-pub use interpolate::grid;
-pub use iso::IsoLine;
-pub use joined::join;
-pub use nurbs::{Net, NurbsSurface};
-pub use offset::offset;
-pub use outlined::{Doubt, Ground, Outlined, outlined};
-pub use polynomial::{polynomial, polynomial_net};
-pub use rail::{OneSided, Rail};
-pub use reparam::{Map, Reparam};
-pub use revolve::{axis_of, revolve};
-pub use rolling::rolling;
-pub use ruled::ruled;
-pub use scatter::scatter;
+pub use crate::surface::analysis::as_net::{NetForm, Off};
+pub use crate::surface::analysis::iso_line::IsoLine;
+pub use crate::surface::blended::ruled::ruled;
+pub use crate::surface::closest::boxed::Boxed;
+pub use crate::surface::closest::curve_extent::curve_bbox;
+pub use crate::surface::closest::extent::{bbox, boxed};
+pub use crate::surface::closest::foot::{foot_within, step};
+pub use crate::surface::closest::nearest::{Closest, Nearest, closest};
+pub use crate::surface::core::enclosure::Strip;
+pub use crate::surface::core::evened::Evened;
+pub use crate::surface::core::surface::Surface;
+pub use crate::surface::data::breaks::chain_breaks;
+pub use crate::surface::data::enclosure::Enclosure;
+pub use crate::surface::data::jet::Jet2;
+pub use crate::surface::data::kind::{Domain, SurfaceKind};
+pub use crate::surface::data::one_sided::OneSided;
+pub use crate::surface::joined::join::join;
+pub use crate::surface::offset::build::offset;
+pub use crate::surface::points::control_net::Net;
+pub use crate::surface::points::interpolate::grid;
+pub use crate::surface::points::polynomial::{polynomial, polynomial_net};
+pub use crate::surface::points::scatter::scatter;
+pub use crate::surface::rails::rail::Rail;
+pub use crate::surface::rails::reparam::{Map, Reparam};
+pub use crate::surface::rails::side::Side;
+pub use crate::surface::rolling::ball_blend::rolling;
+pub use crate::surface::shapes::nurbs::NurbsSurface;
+pub use crate::surface::swept::extrude::extrude;
+pub use crate::surface::swept::revolve::{axis_of, revolve};
+pub use crate::surface::trims::divide::{divide, split};
+pub use crate::surface::trims::holes::{trim, with_loops};
+pub use crate::surface::trims::outlined::{Doubt, Ground, Outlined, outlined};
+pub use crate::surface::trims::project::{Way, carried};

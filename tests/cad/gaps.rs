@@ -8,7 +8,7 @@ use lofting::geometry::build::{arc_through, circle, line};
 use lofting::mesh::Mesh;
 use lofting::network::Chain;
 use lofting::surface::Surface;
-use lofting::surface::plane::bounded;
+use lofting::surface::blended::plane_face::bounded;
 
 use super::{Census, Skin, census, of_surfaces};
 

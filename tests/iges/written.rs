@@ -10,7 +10,10 @@ use lofting::io::iges::Part;
 use lofting::io::iges::write::{Scale, Shown, Thing, sheet, write};
 use lofting::model::measure;
 use lofting::network::Chain;
-use lofting::surface::{self, Surface, nurbs, plane};
+use lofting::surface::blended::plane_face;
+use lofting::surface::core::plane;
+use lofting::surface::points::control_net;
+use lofting::surface::{self, Surface};
 
 use super::{OPTIONS, area, read};
 
@@ -99,14 +102,14 @@ fn surfaces() -> Vec<(Surface, f64)> {
     let cone = surface::ruled(&chain(&arc), &chain(&upper), NONE, &t).unwrap().0;
     let pillar = surface::extrude(&chain(&arc), at(0.0, 0.0, 3.0), NONE, &t).unwrap();
     let profile = build::line(at(2.0, 0.0, 0.0), at(2.0, 0.0, 3.0), NONE).unwrap();
-    let axis = surface::revolve::Axis { about: DVec3::ZERO, direction: DVec3::Z };
+    let axis = surface::swept::revolve::Axis { about: DVec3::ZERO, direction: DVec3::Z };
     let drum = surface::revolve(&chain(&profile), &axis, 2.0 * PI, NONE, &t).unwrap();
     let half = build::arc_center(DVec3::ZERO, at(0.0, 0.0, -2.0), PI, at(0.0, -1.0, 0.0), NONE).unwrap();
     let ball = surface::revolve(&chain(&half), &axis, -1.0, NONE, &t).unwrap();
     let rows = [vec![DVec3::ZERO, at(1.0, 0.0, 1.0), at(2.0, 0.0, 0.0)], vec![at(0.0, 2.0, 0.0), at(1.0, 2.0, 1.0), at(2.0, 2.0, 0.0)]];
     let weights = [vec![1.0, 0.5, 1.0], vec![1.0, 0.5, 1.0]];
-    let net = nurbs::Net { rows: &rows, weights: Some(&weights) };
-    let vault = nurbs::nurbs(&net, (2, 1), (None, None), NONE, &t).unwrap();
+    let net = control_net::Net { rows: &rows, weights: Some(&weights) };
+    let vault = control_net::nurbs(&net, (2, 1), (None, None), NONE, &t).unwrap();
     let grid: Vec<Vec<DVec3>> = (0..5).map(|j| (0..6).map(|i| at(f64::from(i), f64::from(j), f64::from(i * j % 3))).collect()).collect();
     let hills = surface::grid(&grid, NONE, &t).unwrap().0;
     let all = [ruled, cone, pillar, drum, ball, vault, hills];
@@ -146,7 +149,7 @@ fn a_plane_inside_a_loop_is_a_trimmed_surface() {
     let corners: Vec<DVec3> =
         (0..6).map(|k| f64::from(k) * PI / 3.0).map(|a| DVec3::new(2.0 * a.cos(), 2.0 * a.sin(), 1.0 + a.cos())).collect();
     let border = build::polyline(&corners, true, NONE).unwrap();
-    let (face, _) = plane::bounded(&[chain(&border)], NONE, &tolerance()).unwrap();
+    let (face, _) = plane_face::bounded(&[chain(&border)], NONE, &tolerance()).unwrap();
     let part = back(&[thing("deck", "", Shown::Surface(face))], "mm", 1.0);
     let found = &part.surfaces[0].value;
     let outer = found.outer.as_ref().unwrap();

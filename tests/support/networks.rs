@@ -8,7 +8,7 @@ use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
 use lofting::geometry::build::nurbs;
 use lofting::network::{Chain, net};
-use lofting::surface::coons::{Grid, Method, Settings, build};
+use lofting::surface::blended::coons::{Grid, Method, Settings, build};
 use lofting::surface::{Reparam, Surface};
 use serde_json::Value;
 

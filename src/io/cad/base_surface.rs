@@ -12,8 +12,10 @@ use crate::io::cad::curves::{check_reach, transformed, transformed_pole};
 use crate::io::cad::damage::{Damage, damage};
 use crate::io::cad::face_loops::FaceLoops;
 use crate::network::Chain;
-use crate::surface::revolve::{self, Axis};
-use crate::surface::{NurbsSurface, Surface, SurfaceKind, extrude, plane, ruled};
+use crate::surface::core::plane;
+use crate::surface::swept::extrude;
+use crate::surface::swept::revolve::{self, Axis};
+use crate::surface::{NurbsSurface, Surface, SurfaceKind, ruled};
 
 /// A surface of the file in model units; (u, v) are the file's.
 #[derive(Clone, Debug)]

@@ -8,7 +8,7 @@ use crate::base::tolerance::{PARALLEL, Tolerance};
 use crate::geometry::nurbs::projected;
 use crate::io::cad::control_nets::{trimmed_net, with_whole_poles};
 use crate::model::Patch;
-use crate::surface::elementary::{Elementary, Form};
+use crate::surface::analysis::elementary::{Elementary, Form};
 use crate::surface::{Domain, NurbsSurface, Off, Side, Surface};
 
 /// Share of the tolerance that a net may be off, where that can be had.

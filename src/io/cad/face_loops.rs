@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::base::bbox::Box3;
 use crate::base::math;
 use crate::io::cad::border::{Border, reach};
-use crate::surface::revolve::Axis;
+use crate::surface::swept::revolve::Axis;
 
 /// Places along each curve of a loop.
 const SAMPLES: usize = 32;

@@ -21,7 +21,7 @@ use crate::geometry::{Curve, Kind, Motion, build, closest};
 use crate::io::cad::base_surface::Base;
 use crate::io::cad::damage::{Damage, damage};
 use crate::io::cad::face_loops::FaceLoops;
-use crate::surface::revolve::Axis;
+use crate::surface::swept::revolve::Axis;
 
 const TURN: f64 = std::f64::consts::TAU;
 /// Places along a part at which it is compared with others.

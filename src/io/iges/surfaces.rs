@@ -16,7 +16,7 @@ use crate::io::iges::curves::{Place, bernstein};
 use crate::io::iges::entity_data::{Data, NetData, Pointer};
 use crate::io::iges::entity_table::{Book, NESTED};
 use crate::surface::NurbsSurface;
-use crate::surface::revolve::Axis;
+use crate::surface::swept::revolve::Axis;
 
 impl Book {
     /// The surface that a pointer means, its matrix included.

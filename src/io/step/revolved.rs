@@ -13,7 +13,7 @@ use crate::io::cad::revolution_profile::Clear;
 use crate::io::step::conics::Endless;
 use crate::io::step::curves::Course;
 use crate::io::step::reader::Step;
-use crate::surface::revolve::Axis;
+use crate::surface::swept::revolve::Axis;
 
 const TURN: f64 = std::f64::consts::TAU;
 

@@ -16,7 +16,7 @@ use crate::io::step::curves::Course;
 use crate::io::step::reader::{Frame, NESTED, Step};
 use crate::io::step::splines::{self, Netted};
 use crate::surface::NurbsSurface;
-use crate::surface::revolve::Axis;
+use crate::surface::swept::revolve::Axis;
 
 impl Step<'_> {
     /// The surface that an entity is; one without ends reaches about as far as what lies on it.

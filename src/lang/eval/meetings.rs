@@ -12,7 +12,9 @@ use crate::lang::values::types::{FromValue, Ty};
 use crate::lang::values::value::{Dim, Value};
 use crate::network::Chain;
 use crate::network::meet;
-use crate::surface::{Surface, meet as surfaces, plane};
+use crate::surface::Surface;
+use crate::surface::core::plane;
+use crate::surface::intersect::{with_curve, with_surfaces};
 
 /// The one place where two things meet; E507, E508, E509 name the candidates.
 pub(crate) fn meet_once(cx: &mut Cx, a: &Value, b: &Value) -> Result<Value, Halt> {
@@ -38,11 +40,11 @@ pub(crate) fn meet_once(cx: &mut Cx, a: &Value, b: &Value) -> Result<Value, Halt
         }
         (Meeting::Curve(a), Meeting::Curve(b)) => Ok(Value::Node(meet::meet_once(a, b, &tolerance)?.point)),
         (Meeting::Curve(curve), other) | (other, Meeting::Curve(curve)) => match faces(other)? {
-            Some(faces) => Ok(Value::point(surfaces::with_curve_once(curve, &faces, &tolerance)?.point)),
+            Some(faces) => Ok(Value::point(with_curve::with_curve_once(curve, &faces, &tolerance)?.point)),
             None => Err(later(cx, a, b)),
         },
         (x, y) => match (faces(x)?, faces(y)?) {
-            (Some(x), Some(y)) => Ok(Value::Curve(surfaces::with_surfaces_once(&x, &y, cx.origin(), &tolerance)?)),
+            (Some(x), Some(y)) => Ok(Value::Curve(with_surfaces::with_surfaces_once(&x, &y, cx.origin(), &tolerance)?)),
             _ => Err(later(cx, a, b)),
         },
     }
@@ -66,7 +68,7 @@ pub(crate) fn meet_all(cx: &mut Cx, a: &Meeting, b: &Meeting) -> Result<Vec<Valu
         (Meeting::Curve(curve), other) | (other, Meeting::Curve(curve)) => {
             let Some(faces) = faces(other)? else { return Err(ValueFault::NotInThisVersion { what: MESH.to_owned() }.into()) };
             let mut places = Vec::new();
-            for meeting in surfaces::with_curve(curve, &faces, &tolerance)? {
+            for meeting in with_curve::with_curve(curve, &faces, &tolerance)? {
                 places.push(Value::point(meeting.point));
                 places.extend(meeting.shared_to.map(|f| Value::point(curve.point(f))));
             }
@@ -74,7 +76,7 @@ pub(crate) fn meet_all(cx: &mut Cx, a: &Meeting, b: &Meeting) -> Result<Vec<Valu
         }
         (a, b) => match (faces(a)?, faces(b)?) {
             (Some(a), Some(b)) => {
-                Ok(surfaces::with_surfaces(&a, &b, cx.origin(), &tolerance)?.curves.into_iter().map(Value::Curve).collect())
+                Ok(with_surfaces::with_surfaces(&a, &b, cx.origin(), &tolerance)?.curves.into_iter().map(Value::Curve).collect())
             }
             _ => Err(ValueFault::NotInThisVersion { what: MESH.to_owned() }.into()),
         },
@@ -97,7 +99,7 @@ pub(crate) fn cutters(cx: &mut Cx, surface: &Surface, by: Vec<Cutter>) -> Result
             Cutter::Shell(shell) => shell.surfaces.clone(),
             Cutter::Plane(p) => vec![plane::unbounded(p.at, p.normal, Origin::NONE)?],
         };
-        let found = surfaces::with_surfaces(::std::slice::from_ref(surface), &faces, cx.origin(), &tolerance)?.curves;
+        let found = with_surfaces::with_surfaces(::std::slice::from_ref(surface), &faces, cx.origin(), &tolerance)?.curves;
         if found.is_empty() {
             let b = faces.first().map_or(Origin::NONE, Surface::origin);
             return Err(Fault::from(CutFault::NoCurve { a: surface.origin(), b, touch: None, tolerance: tolerance.point }).into());

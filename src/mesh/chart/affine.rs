@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use crate::base::tolerance::EPSILON;
 use crate::mesh::chart::parametric_surface::{Near, ParametricSurface, Spot};
-use crate::surface::quick::PowerForm;
+use crate::surface::core::power_form::PowerForm;
 use crate::surface::{Domain, Jet2, Surface};
 
 /// A surface under a chart (x, y) = (a u + b v, c v).

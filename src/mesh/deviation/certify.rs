@@ -12,7 +12,7 @@ use crate::base::tolerance::EPSILON;
 use crate::mesh::data::face_geometry::{FaceGeometry, FaceNodes};
 use crate::mesh::deviation::triangle::over_sides;
 use crate::mesh::mapped::grid::Grid;
-use crate::surface::quick::Bends;
+use crate::surface::core::power_form::Bends;
 use crate::surface::{Domain, Enclosure, Surface, foot_within};
 
 /// Share of the box of a triangle by which it is widened: feet of its points lie a little beside their (u, v).

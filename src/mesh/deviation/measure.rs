@@ -13,7 +13,7 @@ use crate::mesh::data::face_geometry::{FaceGeometry, FaceNodes};
 use crate::mesh::deviation::poles::from_pole;
 use crate::mesh::deviation::triangle::stationary;
 use crate::mesh::mapped::grid::{Grid, triangle_rows};
-use crate::surface::quick::PowerForm;
+use crate::surface::core::power_form::PowerForm;
 use crate::surface::{Domain, Surface, foot_within, step};
 
 /// Divisions of a triangle's side.

@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3};
 
 use crate::mesh::deviation::triangle;
 use crate::surface::Surface;
-use crate::surface::quick::PowerForm;
+use crate::surface::core::power_form::PowerForm;
 
 /// How often a side is halved where the bound over the whole of it is not enough.
 const HALVES: u32 = 5;

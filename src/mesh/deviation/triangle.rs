@@ -12,7 +12,7 @@ use crate::base::tolerance::NUDGE;
 use crate::mesh::chart::parametric_surface::Spot;
 use crate::mesh::deviation::poles;
 use crate::mesh::request::plan::TALL;
-use crate::surface::quick::{Bends, PowerForm};
+use crate::surface::core::power_form::{Bends, PowerForm};
 use crate::surface::{Domain, Jet2, Surface};
 
 /// Share of the box of a triangle by which it is widened: feet of its points lie a little beside their (u, v).

@@ -31,7 +31,7 @@ use crate::mesh::size::uneven;
 use crate::mesh::tri::too_large::refuse_large;
 use crate::mesh::verify::{face_check, turned};
 use crate::surface::Domain;
-use crate::surface::quick::PowerForm;
+use crate::surface::core::power_form::PowerForm;
 
 /// Refinements of whole faces before a limit counts as out of reach.
 const ROUNDS: usize = 40;

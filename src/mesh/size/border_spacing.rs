@@ -22,7 +22,7 @@ use crate::mesh::size::gaps::{self, Beside, PLACES};
 use crate::mesh::size::proximity::Narrow;
 use crate::mesh::size::too_large;
 use crate::surface::Surface;
-use crate::surface::quick::PowerForm;
+use crate::surface::core::power_form::PowerForm;
 
 /// Borders are fixed before triangulation; their steps are 10 % shorter than inner edges.
 const ROOM: f64 = 0.9;

@@ -8,7 +8,7 @@ use crate::base::par;
 use crate::mesh::verify::contacts::Scan;
 use crate::model::SurfaceId;
 use crate::network::Chain;
-use crate::surface::meet::{SurfaceMeeting, with_curve};
+use crate::surface::intersect::with_curve::{SurfaceMeeting, with_curve};
 use crate::surface::{Surface, with_loops};
 
 /// A segment of an edge and a face near it.

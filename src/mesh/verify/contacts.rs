@@ -23,7 +23,7 @@ use crate::mesh::request::input::Input;
 use crate::mesh::verify::contact_edges::{Task, meetings};
 use crate::mesh::verify::contact_leaves::{BULGE, Leaves};
 use crate::model::SurfaceId;
-use crate::surface::meet::with_surfaces;
+use crate::surface::intersect::with_surfaces::with_surfaces;
 use crate::surface::{Closest, Nearest, SurfaceKind};
 
 /// Crossings of elements of two faces that are looked at before the faces count as apart, and those that they are chosen from.

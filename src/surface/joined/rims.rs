@@ -2,11 +2,12 @@
 
 use glam::DVec3;
 
-use super::shape::{Piece, Turn, foot, foot_round};
 use crate::base::job;
 use crate::base::tolerance::Tolerance;
-use crate::surface::core::{Side, Surface};
-use crate::surface::rail::OneSided;
+use crate::surface::core::joined::{Piece, Turn, foot, foot_round};
+use crate::surface::core::surface::Surface;
+use crate::surface::data::one_sided::OneSided;
+use crate::surface::rails::side::Side;
 
 /// Steps along a border.
 const STEPS: usize = 32;

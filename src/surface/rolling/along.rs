@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::ball::{Ball, Guess, LEFT, STARTS};
-use super::station::Station;
+use crate::surface::rolling::ball::{Ball, Guess, LEFT, STARTS};
+use crate::surface::rolling::station::Station;
 
 /// Balls round a closed edge at most, and the cosine of the largest turn of the centre's way from one to the next.
 const MOST_AROUND: usize = 1024;

@@ -2,9 +2,9 @@
 
 use glam::DVec2;
 
-use super::ball::{Ball, Guess};
-use super::station::{Place, Station};
 use crate::base::tolerance::NUDGE;
+use crate::surface::rolling::ball::{Ball, Guess};
+use crate::surface::rolling::station::{Place, Station};
 
 /// Stations this near to each other, in tolerances, are one.
 const NEAR: f64 = 64.0;
@@ -24,7 +24,7 @@ struct Line {
 }
 
 /// Stations with those between them that touch a surface on one of its breaks; those very near to one give way to it.
-pub(super) fn with_breaks(ball: &Ball, radius: f64, stations: &[Station]) -> Vec<Station> {
+pub(crate) fn with_breaks(ball: &Ball, radius: f64, stations: &[Station]) -> Vec<Station> {
     let breaks = [ball.faces[0].breaks(), ball.faces[1].breaks()];
     let last = stations.len() - 2;
     let mut all = vec![stations[0]];
@@ -54,7 +54,7 @@ fn near(ball: &Ball, s: &Station, t: &Station) -> bool {
 }
 
 /// Stations with one more between any two of them.
-pub(super) fn with_middles(ball: &Ball, radius: f64, stations: &[Station]) -> Vec<Station> {
+pub(crate) fn with_middles(ball: &Ball, radius: f64, stations: &[Station]) -> Vec<Station> {
     let mut all = vec![stations[0]];
     for pair in stations.windows(2) {
         // The surface and the direction in (u, v) in which it goes farther.
@@ -108,7 +108,7 @@ fn on_lines(ball: &Ball, radius: f64, pair: &[Station], lines: &[Line]) -> Vec<S
 }
 
 /// Stations twice where the points that touch have other speeds before than after them: each with those of its side.
-pub(super) fn with_sides(ball: &Ball, radius: f64, stations: &[Station]) -> Vec<Station> {
+pub(crate) fn with_sides(ball: &Ball, radius: f64, stations: &[Station]) -> Vec<Station> {
     let step = BESIDE * ball.tolerance.point;
     let beside = |s: &Station, side: f64| {
         let guess = Guess { uv: s.uv, points: s.feet };

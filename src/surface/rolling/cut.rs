@@ -1,11 +1,11 @@
 //! A surface cut back to where the ball touches it.
 
-use super::ball::{Ball, LEFT};
 use crate::base::fault::Result;
 use crate::base::origin::Origin;
 use crate::network::Chain;
-use crate::surface::core::Surface;
-use crate::surface::divide;
+use crate::surface::core::surface::Surface;
+use crate::surface::rolling::ball::{Ball, LEFT};
+use crate::surface::trims::divide::divide;
 
 /// Share of a step on which a surface goes on at the least, where it is taken to go on so far.
 const AHEAD: f64 = 0.5;
@@ -13,7 +13,7 @@ const AHEAD: f64 = 0.5;
 const CLEAR: f64 = 0.7;
 
 /// The part of surface `k` on the far side of the contact curve from the edge.
-pub(super) fn cut_back(ball: &Ball, k: usize, contact: &Chain, origin: Origin) -> Result<Surface> {
+pub(crate) fn cut_back(ball: &Ball, k: usize, contact: &Chain, origin: Origin) -> Result<Surface> {
     let face = &ball.faces[k];
     let at = contact.point(0.5);
     let from = ball.edge.closest(at).1;

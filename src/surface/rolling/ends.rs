@@ -2,15 +2,16 @@
 
 use glam::DVec3;
 
-use super::ball::Ball;
-use super::made::Roll;
 use crate::base::fault::{NoBlend, Result};
 use crate::base::origin::Origin;
 use crate::geometry::build::line;
 use crate::network::{Chain, meet};
-use crate::surface::core::Surface;
-use crate::surface::walls::border_chains;
-use crate::surface::{Way, carried, trim};
+use crate::surface::core::surface::Surface;
+use crate::surface::offset::boundary::border_chains;
+use crate::surface::rolling::ball::Ball;
+use crate::surface::rolling::made::Roll;
+use crate::surface::trims::holes::trim;
+use crate::surface::trims::project::{Way, carried};
 
 /// Steps from the middle to an end in which the border is looked for.
 const STEPS: usize = 256;
@@ -23,7 +24,7 @@ const ON: f64 = 16.0;
 ///
 /// Where both contacts end at one arc that is its end, elsewhere it is straight in (u, v). Fails with E674 where a contact ends
 /// inside its surface or runs over a border.
-pub(super) fn ended(ball: &Ball, roll: Roll, origin: Origin) -> Result<Roll> {
+pub(crate) fn ended(ball: &Ball, roll: Roll, origin: Origin) -> Result<Roll> {
     let point = ball.tolerance.point;
     let mut stops = [[0.0, 1.0]; 2];
     if !ball.closed {

@@ -2,10 +2,10 @@
 
 use glam::DVec3;
 
-use super::ball::Ball;
-use super::station::Station;
 use crate::base::fault::{BlendFault, Fault, NoBlend, Result};
 use crate::base::origin::Origin;
+use crate::surface::rolling::ball::Ball;
+use crate::surface::rolling::station::Station;
 
 /// Halvings in search of a radius that fits.
 const SMALLER: usize = 24;
@@ -22,7 +22,7 @@ const FROM: f64 = 0.5;
 
 /// The balls of a radius at places along the edge; E673 with the largest radius where they do not fit: one with which `is_made`
 /// says that the rounding can be made.
-pub(super) fn stations(ball: &Ball, radius: f64, origin: Origin, is_made: impl Fn(Vec<Station>, f64) -> bool) -> Result<Vec<Station>> {
+pub(crate) fn stations(ball: &Ball, radius: f64, origin: Origin, is_made: impl Fn(Vec<Station>, f64) -> bool) -> Result<Vec<Station>> {
     let of = |radius: f64| all(ball, radius);
     of(radius).map_err(|at| {
         let mut fits = radius;
@@ -57,7 +57,7 @@ pub(super) fn stations(ball: &Ball, radius: f64, origin: Origin, is_made: impl F
 }
 
 /// E673 for a radius whose balls are found and whose rounding is not, where that of a smaller one is; `at` is where it was lost.
-pub(super) fn above_made(
+pub(crate) fn above_made(
     ball: &Ball,
     (radius, at): (f64, DVec3),
     origin: Origin,

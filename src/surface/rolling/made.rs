@@ -2,23 +2,24 @@
 
 use glam::{DVec3, DVec4};
 
-use super::ball::{Ball, Guess};
-use super::breaks::{with_breaks, with_middles, with_sides};
-use super::station::Station;
 use crate::base::fault::{CurveFault, Result};
-use crate::base::job;
-use crate::base::math;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
+use crate::base::{job, math};
 use crate::geometry::build::{arc_center, arc_through};
 use crate::geometry::curve::Shape as CurveShape;
 use crate::network::Chain;
-use crate::surface::core::{Jet2, Parts, Surface, SurfaceKind};
-use crate::surface::extrude::extrude;
-use crate::surface::iso::IsoLine;
-use crate::surface::nurbs::NurbsSurface;
-use crate::surface::rail::OneSided;
-use crate::surface::revolve::{Axis, revolve};
+use crate::surface::analysis::iso_line::IsoLine;
+use crate::surface::core::surface::{Parts, Surface};
+use crate::surface::data::jet::Jet2;
+use crate::surface::data::kind::SurfaceKind;
+use crate::surface::data::one_sided::OneSided;
+use crate::surface::rolling::ball::{Ball, Guess};
+use crate::surface::rolling::breaks::{with_breaks, with_middles, with_sides};
+use crate::surface::rolling::station::Station;
+use crate::surface::shapes::nurbs::NurbsSurface;
+use crate::surface::swept::extrude::extrude;
+use crate::surface::swept::revolve::{Axis, revolve};
 
 /// Share of the tolerance within which a net keeps to the ball.
 const SHARE: f64 = 0.25;
@@ -28,13 +29,13 @@ const EXACT: f64 = 1.0 / 64.0;
 const MOST: usize = 4096;
 
 /// The surface and the curves in which it touches both sides.
-pub(super) struct Roll {
+pub(crate) struct Roll {
     pub surface: Surface,
     pub contacts: [Chain; 2],
 }
 
 /// The surface through the balls at some stations, and at more of them where it needs more.
-pub(super) fn rolled(ball: &Ball, radius: f64, stations: Vec<Station>, origin: Origin) -> Result<Roll> {
+pub(crate) fn rolled(ball: &Ball, radius: f64, stations: Vec<Station>, origin: Origin) -> Result<Roll> {
     let stations = turned(ball, stations);
     let (tolerance, at) = (&ball.tolerance, stations[0].center);
     let pieces = with_breaks(ball, radius, &stations);

@@ -2,15 +2,14 @@
 
 use glam::{DVec2, DVec3};
 
-use super::ball::Face;
 use crate::base::solve;
-use crate::surface::core::unit_normal;
-use crate::surface::foot::step;
-use crate::surface::offset::slopes;
+use crate::surface::closest::foot::step;
+use crate::surface::data::jet::{slopes, unit_normal};
+use crate::surface::rolling::face::Face;
 
 /// Where a ball touches.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Station {
+pub(crate) struct Station {
     /// Its centre.
     pub center: DVec3,
     /// Places on both surfaces.
@@ -36,7 +35,7 @@ impl Station {
 }
 
 /// Which one of the balls.
-pub(super) enum Place {
+pub(crate) enum Place {
     /// The one with its centre in a plane: a point of it, and its normal on the side to which the centre travels.
     Plane(DVec3, DVec3),
     /// The one that touches surface `face` on a line of constant u (`axis` 0) or v (1); the centre travels about in direction `along`.
@@ -87,7 +86,7 @@ fn raised(face: &Face, uv: DVec2, radius: f64) -> Option<Raised> {
 }
 
 /// The ball at a place, from guesses of where it touches; none where Newton's method finds none.
-pub(super) fn station(faces: &[Face; 2], radius: f64, place: &Place, guess: [DVec2; 2], rounding: f64) -> Option<Station> {
+pub(crate) fn station(faces: &[Face; 2], radius: f64, place: &Place, guess: [DVec2; 2], rounding: f64) -> Option<Station> {
     const STEPS: usize = 24;
     /// What is left over after the last step, in roundings.
     const LEFT: f64 = 256.0;

@@ -5,7 +5,7 @@ use crate::geometry::nurbs::projected;
 use crate::io::cad::elementary_surface::Ground;
 use crate::io::iges::entity_writer::{Role, Values};
 use crate::io::iges::write::maker::Maker;
-use crate::surface::elementary::{Elementary, Form};
+use crate::surface::analysis::elementary::{Elementary, Form};
 use crate::surface::{NetForm, NurbsSurface, Off};
 
 impl Maker<'_> {

@@ -14,7 +14,7 @@ use crate::io::cad::curve_on_surface::fitted;
 use crate::io::step::write::curves::{Along, spline_of};
 use crate::io::step::write::records::{Id, Records};
 use crate::io::step::write::things::Scale;
-use crate::surface::elementary::{Elementary, Form};
+use crate::surface::analysis::elementary::{Elementary, Form};
 
 /// Pieces of a smooth stretch of an edge to begin with, each of which gets a spline of its own.
 const PLACES: usize = 4;

@@ -8,7 +8,7 @@ use crate::io::step::write::curves::knots;
 use crate::io::step::write::records::{Id, Records, Values};
 use crate::io::step::write::things::Scale;
 use crate::surface::NurbsSurface;
-use crate::surface::elementary::{Elementary, Form};
+use crate::surface::analysis::elementary::{Elementary, Form};
 
 /// Writes the surface.
 pub fn put(records: &mut Records, ground: &Ground, scale: &Scale) -> Id {

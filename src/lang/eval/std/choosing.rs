@@ -15,7 +15,7 @@ use crate::lang::eval::std::kinds::{Carrier, EdgeKey, EdgeOf};
 use crate::lang::values::value::Value;
 use crate::model::{SharedEdge, SharedTrack};
 use crate::network::Chain;
-use crate::surface::plane::unbounded;
+use crate::surface::core::plane::unbounded;
 use crate::surface::{Nearest, Surface, chain_breaks, curve_bbox};
 
 /// Places of an edge that are looked at first.

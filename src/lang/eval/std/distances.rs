@@ -17,7 +17,8 @@ use crate::lang::values::value::{Dim, Quantity, Value};
 use crate::model::apart::{between, from_curve};
 use crate::network::Chain;
 use crate::network::meet::closest_points;
-use crate::surface::{Nearest, Surface, SurfaceKind, axis_of, plane};
+use crate::surface::core::plane;
+use crate::surface::{Nearest, Surface, SurfaceKind, axis_of};
 
 /// What a distance is taken from.
 enum Figure {

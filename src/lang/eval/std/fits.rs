@@ -89,7 +89,7 @@ fn fitted(cx: &mut Cx, data: Data, said: Said) -> Result<Value, Halt> {
             let net = rows(net);
             cx.seen(net.iter().flatten().copied());
             let tolerance = cx.tolerance()?;
-            let (surface, notes) = surface::fit::fit(&net, within, cx.origin(), &tolerance)?;
+            let (surface, notes) = surface::points::fit::fit(&net, within, cx.origin(), &tolerance)?;
             Ok(Value::Surface(finished(cx, surface, &notes)?))
         }
     }

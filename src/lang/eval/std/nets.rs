@@ -10,8 +10,10 @@ use crate::lang::eval::std::surfaces::finished;
 use crate::lang::values::types::Length;
 use crate::network::Chain;
 use crate::network::net;
-use crate::surface::coons::{self, Grid, Method, Settings};
-use crate::surface::skin::{self, Across, Leaving, Section};
+use crate::surface::blended::coons::{self, Grid, Method, Settings};
+use crate::surface::blended::skin::{self, Across};
+use crate::surface::blended::skin_align::Section;
+use crate::surface::blended::skin_ends::Leaving;
 use crate::surface::{Reparam, Surface};
 
 /// The model's tolerance, with another distance at which curves meet.

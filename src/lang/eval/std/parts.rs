@@ -13,16 +13,16 @@ use crate::lang::values::types::{Area, Length, Point, Volume};
 use crate::lang::values::value::Value;
 use crate::model::measure;
 use crate::surface::Surface;
-use crate::surface::looks::Looks;
+use crate::surface::analysis::recognize::SimpleForm;
 use crate::{builtins, fields};
 
 /// Those of some faces whose form is wanted.
-fn of_form(cx: &mut Cx, faces: Vec<Surface>, wanted: impl Fn(Option<Looks>) -> bool) -> Result<Vec<Surface>, Halt> {
+fn of_form(cx: &mut Cx, faces: Vec<Surface>, wanted: impl Fn(Option<SimpleForm>) -> bool) -> Result<Vec<Surface>, Halt> {
     let tolerance = cx.tolerance()?;
     let mut found = Vec::new();
     for face in faces {
         cx.steps(1)?;
-        if wanted(face.looks(&tolerance)) {
+        if wanted(face.simple_form(&tolerance)) {
             found.push(face);
         }
     }
@@ -74,7 +74,7 @@ builtins! {
     fn planes(
         /// Surfaces, or a part.
         faces: Vec<Surface>,
-    ) -> Vec<Surface> = |cx, faces| of_form(cx, faces, |form| matches!(form, Some(Looks::Plane)));
+    ) -> Vec<Surface> = |cx, faces| of_form(cx, faces, |form| matches!(form, Some(SimpleForm::Plane)));
 
     /// Faces that are round cylinders, all or those of one radius.
     ///
@@ -90,7 +90,7 @@ builtins! {
         radius: Option<Length>,
     ) -> Vec<Surface> = |cx, faces, radius| {
         let fits = fits(cx, radius)?;
-        of_form(cx, faces, |form| matches!(form, Some(Looks::Cylinder { radius, .. }) if fits(radius)))
+        of_form(cx, faces, |form| matches!(form, Some(SimpleForm::Cylinder { radius, .. }) if fits(radius)))
     };
 
     /// Faces that are round cones.
@@ -103,7 +103,7 @@ builtins! {
     fn cones(
         /// Surfaces, or a part.
         faces: Vec<Surface>,
-    ) -> Vec<Surface> = |cx, faces| of_form(cx, faces, |form| matches!(form, Some(Looks::Cone)));
+    ) -> Vec<Surface> = |cx, faces| of_form(cx, faces, |form| matches!(form, Some(SimpleForm::Cone)));
 
     /// Faces that are spheres, all or those of one radius.
     ///
@@ -120,7 +120,7 @@ builtins! {
         radius: Option<Length>,
     ) -> Vec<Surface> = |cx, faces, radius| {
         let fits = fits(cx, radius)?;
-        of_form(cx, faces, |form| matches!(form, Some(Looks::Sphere { radius, .. }) if fits(radius)))
+        of_form(cx, faces, |form| matches!(form, Some(SimpleForm::Sphere { radius, .. }) if fits(radius)))
     };
 
     /// Faces that are ring tori, all or those of one tube radius.
@@ -138,7 +138,7 @@ builtins! {
         radius: Option<Length>,
     ) -> Vec<Surface> = |cx, faces, radius| {
         let fits = fits(cx, radius)?;
-        of_form(cx, faces, |form| matches!(form, Some(Looks::Torus { minor, .. }) if fits(minor)))
+        of_form(cx, faces, |form| matches!(form, Some(SimpleForm::Torus { minor, .. }) if fits(minor)))
     };
 
     /// Faces that are not planes, cylinders, cones, spheres or ring tori.

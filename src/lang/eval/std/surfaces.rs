@@ -16,10 +16,14 @@ use crate::lang::values::types::{Angle, Axis, Direction, Length, Point, Rest};
 use crate::lang::values::value::{Plane, Value};
 use crate::model::measure;
 use crate::network::{self, Chain, ChainFlow, FlowKind};
-use crate::surface::coons::{self, Grid, Method, Settings};
-use crate::surface::meet::crossing;
-use crate::surface::nurbs::{self, Net};
-use crate::surface::{Domain, Reparam, Surface, Way, carried, extrude, interpolate, plane, revolve, ruled as surface_between};
+use crate::surface::blended::coons::{self, Grid, Method, Settings};
+use crate::surface::blended::plane_face;
+use crate::surface::core::plane;
+use crate::surface::intersect::self_intersection::crossing;
+use crate::surface::points::control_net::{self, Net};
+use crate::surface::points::interpolate;
+use crate::surface::swept::{extrude, revolve};
+use crate::surface::{Domain, Reparam, Surface, Way, carried, ruled as surface_between};
 
 /// Checks that (u, v) lies in the surface's domain; each with the name of its argument.
 pub(crate) fn checked_uv(surface: &Surface, u: (f64, &'static str), v: (f64, &'static str)) -> Result<(f64, f64), Halt> {
@@ -277,7 +281,7 @@ builtins! {
         (true, Some(at), Some(normal)) => Ok(Value::Plane(Arc::new(Plane { at: at.0, normal: unit(normal.0, "normal")? }))),
         (false, None, None) => {
             let tolerance = cx.tolerance()?;
-            let (surface, notes) = plane::bounded(&curves.0, cx.origin(), &tolerance)?;
+            let (surface, notes) = plane_face::bounded(&curves.0, cx.origin(), &tolerance)?;
             finished(cx, surface, &notes).map(Value::Surface)
         }
         (false, at, _) => {
@@ -461,7 +465,7 @@ builtins! {
         let net = rows(net);
         cx.seen(net.iter().flatten().copied());
         let tolerance = cx.tolerance()?;
-        let surface = nurbs::bezier(&Net { rows: &net, weights: weights.as_deref() }, cx.origin(), &tolerance)?;
+        let surface = control_net::bezier(&Net { rows: &net, weights: weights.as_deref() }, cx.origin(), &tolerance)?;
         finished(cx, surface, &[])
     };
 
@@ -497,7 +501,7 @@ builtins! {
         let net = crate::surface::polynomial_net(&coefficients)?;
         cx.seen(net.iter().flatten().copied());
         let tolerance = cx.tolerance()?;
-        let surface = nurbs::bezier(&Net { rows: &net, weights: None }, cx.origin(), &tolerance)?;
+        let surface = control_net::bezier(&Net { rows: &net, weights: None }, cx.origin(), &tolerance)?;
         finished(cx, surface, &[])
     };
 
@@ -526,7 +530,7 @@ builtins! {
         let tolerance = cx.tolerance()?;
         let knots = (knots_u.as_deref(), knots_v.as_deref());
         let net = Net { rows: &net, weights: weights.as_deref() };
-        let surface = nurbs::nurbs(&net, (degree_u, degree_v), knots, cx.origin(), &tolerance)?;
+        let surface = control_net::nurbs(&net, (degree_u, degree_v), knots, cx.origin(), &tolerance)?;
         finished(cx, surface, &[])
     };
 

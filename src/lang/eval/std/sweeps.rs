@@ -8,8 +8,12 @@ use crate::lang::eval::std::transforms::axis_line;
 use crate::lang::values::types::{Angle, Axis, Length, Point};
 use crate::lang::values::value::Value;
 use crate::network::Chain;
-use crate::surface::sweeps::{AlongSettings, Input, Law, Method, along as carried_along, sweep as swept};
-use crate::surface::{Surface, revolve};
+use crate::surface::Surface;
+use crate::surface::swept::along::{Settings as AlongSettings, along as carried_along};
+use crate::surface::swept::laws::Law;
+use crate::surface::swept::revolve;
+use crate::surface::swept::sweep::sweep as swept;
+use crate::surface::swept::sweep_input::{Input, Method};
 
 crate::choices! {
     /// What a profile does at a corner of its path.

@@ -8,7 +8,7 @@ use crate::lang::eval::std::surfaces::tell_crossing;
 use crate::lang::values::types::Length;
 use crate::model::measure::points_inwards;
 use crate::surface::Surface;
-use crate::surface::walls::{thicken, thicken_all, without_creases};
+use crate::surface::offset::thicken::{thicken, thicken_all, without_creases};
 use crate::{builtins, choices};
 
 choices! {

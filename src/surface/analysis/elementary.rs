@@ -1,0 +1,179 @@
+//! What an extruded or revolved surface, or a plane, is by its simplest name: plane, cylinder, cone, sphere or torus.
+
+use glam::DVec3;
+
+use crate::base::tolerance::{PARALLEL, Tolerance};
+use crate::geometry::Curve;
+use crate::geometry::arc::EllipticArc;
+use crate::geometry::curve::Shape as CurveShape;
+use crate::surface::core::shape::Shape;
+use crate::surface::core::surface::Surface;
+use crate::surface::data::kind::Domain;
+use crate::surface::rails::rail::Rail;
+use crate::surface::rails::side::between;
+use crate::surface::shapes::sweep::Path;
+use crate::surface::swept::revolve::Axis;
+
+/// An exact form without knots.
+#[derive(Clone, Debug)]
+pub enum Form {
+    /// A plane with its unit normal.
+    Plane {
+        /// A point of it.
+        at: DVec3,
+        /// Unit normal.
+        normal: DVec3,
+    },
+    /// A cylinder; its normal points out.
+    Cylinder {
+        /// Its axis.
+        axis: Axis,
+        /// Radius, model units.
+        radius: f64,
+    },
+    /// A cone whose radius grows along its axis; its normal points out.
+    Cone {
+        /// Its axis; the point is where the radius is known.
+        axis: Axis,
+        /// Radius there, model units, 0 at the apex.
+        radius: f64,
+        /// Angle between the axis and its lines, radians.
+        angle: f64,
+    },
+    /// A sphere; its normal points out.
+    Sphere {
+        /// The centre and the direction of its poles.
+        axis: Axis,
+        /// Radius, model units.
+        radius: f64,
+    },
+    /// A ring torus; its normal points out.
+    Torus {
+        /// Its axis through its middle.
+        axis: Axis,
+        /// Radius of the circle of centres, model units.
+        major: f64,
+        /// Radius of the tube, model units, less than the other one.
+        minor: f64,
+    },
+}
+
+/// A form and where it begins.
+#[derive(Clone, Debug)]
+pub struct Elementary {
+    /// The form.
+    pub form: Form,
+    /// Direction from the axis, or in the plane, to where the surface has its seam or first border; a unit vector across the axis.
+    pub reference: DVec3,
+    /// The normal of the form is the surface's.
+    pub along: bool,
+}
+
+impl Surface {
+    /// The exact form between two values of v of an extruded or revolved surface, or of a plane; `None` for what has none.
+    pub fn elementary(&self, v: (f64, f64), tolerance: &Tolerance) -> Option<Elementary> {
+        let parts = self.parts();
+        match &parts.shape {
+            Shape::Plane(_) => {
+                let jet = self.jet(0.0, 0.0);
+                let normal = jet.du.cross(jet.dv).normalize_or_zero();
+                Some(Elementary { form: Form::Plane { at: jet.p, normal }, reference: jet.du.normalize_or_zero(), along: true })
+            }
+            Shape::Sweep(sweep) => {
+                let Rail::Chain { chain, map, .. } = sweep.profile() else { return None };
+                let whole = (0.0, 1.0);
+                let (from, to) = match (self.domain(), parts.flipped) {
+                    (Domain::Loop, _) => whole,
+                    (_, true) => (1.0 - v.1, 1.0 - v.0),
+                    (_, false) => v,
+                };
+                let profile = between(chain, map.value(from), map.value(to), tolerance).ok()?.to_curve().ok()?;
+                let (form, reference) = match sweep.path() {
+                    Path::Straight { by } => carried(&profile, by),
+                    Path::Turn { about, axis, angle } => turned(&profile, Axis { about, direction: axis * angle.signum() }, tolerance),
+                }?;
+                // In the middle of the stretch, away from poles.
+                let jet = self.jet(0.5, 0.5 * (v.0 + v.1));
+                let along = form.normal_is(jet.p, jet.du.cross(jet.dv));
+                Some(Elementary { form, reference, along })
+            }
+            _ => None,
+        }
+    }
+}
+
+impl Form {
+    /// Whether a normal at a point of it is its own, or the one against it.
+    fn normal_is(&self, p: DVec3, normal: DVec3) -> bool {
+        let out = |axis: &Axis| (p - axis.about).reject_from(axis.direction);
+        let own = match self {
+            Self::Plane { normal, .. } => *normal,
+            Self::Cylinder { axis, .. } | Self::Cone { axis, .. } => out(axis),
+            Self::Sphere { axis, .. } => p - axis.about,
+            Self::Torus { axis, major, .. } => p - (axis.about + out(axis).normalize_or_zero() * *major),
+        };
+        own.dot(normal) > 0.0
+    }
+}
+
+fn round(profile: &Curve) -> Option<(EllipticArc, f64)> {
+    let CurveShape::Arc(arc) = profile.shape() else { return None };
+    arc.radius.map(|radius| (*arc, radius))
+}
+
+/// A profile carried straight, with the direction from the axis to its start.
+fn carried(profile: &Curve, by: DVec3) -> Option<(Form, DVec3)> {
+    let way = by.normalize_or_zero();
+    if let CurveShape::Line(a, b) = profile.shape() {
+        return Some((Form::Plane { at: *a, normal: by.cross(*b - *a).normalize_or_zero() }, way));
+    }
+    let (arc, radius) = round(profile)?;
+    let normal = arc.u.cross(arc.v).normalize_or_zero();
+    let straight = normal.cross(way).length() <= PARALLEL;
+    straight.then(|| (Form::Cylinder { axis: Axis { about: arc.center, direction: normal }, radius }, arc.u.normalize_or_zero()))
+}
+
+/// A profile turned about an axis, with the direction from the axis to it.
+fn turned(profile: &Curve, axis: Axis, tolerance: &Tolerance) -> Option<(Form, DVec3)> {
+    let out = |p: DVec3| (p - axis.about).reject_from_normalized(axis.direction);
+    let foot = |p: DVec3| axis.about + axis.direction * axis.direction.dot(p - axis.about);
+    // Both ends of a sphere's profile lie on the axis.
+    let (from, to) = profile.domain();
+    let places = [profile.start(), profile.end(), profile.point(0.5 * (from + to))].map(out);
+    let farthest = places.into_iter().fold(DVec3::ZERO, |a, b| if b.length() > a.length() { b } else { a });
+    let reference = farthest.normalize_or_zero();
+    // Whether a direction and a point lie in the half plane of the axis through the reference.
+    let across = axis.direction.cross(reference);
+    let in_plane = |p: DVec3| across.dot(p - axis.about).abs() <= tolerance.rounding;
+    let form = match profile.shape() {
+        CurveShape::Line(a, b) if in_plane(*a) && in_plane(*b) => {
+            let (along, ra, rb) = (axis.direction.dot(*b - *a), reference.dot(*a - axis.about), reference.dot(*b - axis.about));
+            let size = (*b - *a).length();
+            if along.abs() <= PARALLEL * size {
+                Some(Form::Plane { at: foot(*a), normal: axis.direction * (ra - rb).signum() })
+            } else if (rb - ra).abs() <= PARALLEL * size {
+                Some(Form::Cylinder { axis: Axis { about: foot(*a), ..axis }, radius: ra })
+            } else {
+                // From its narrow end to its wide one.
+                let (narrow, radius) = if ra < rb { (*a, ra) } else { (*b, rb) };
+                let grows = along * (rb - ra) > 0.0;
+                let direction = if grows { axis.direction } else { -axis.direction };
+                let angle = crate::base::math::atan2((rb - ra).abs(), along.abs());
+                let radius = if radius <= tolerance.rounding { 0.0 } else { radius };
+                (radius >= 0.0).then(|| Form::Cone { axis: Axis { about: foot(narrow), direction }, radius, angle })
+            }
+        }
+        _ => round(profile).and_then(|(arc, minor)| {
+            let normal = arc.u.cross(arc.v).normalize_or_zero();
+            let major = out(arc.center).length();
+            if normal.dot(axis.direction).abs() > PARALLEL || normal.dot(arc.center - axis.about).abs() > tolerance.rounding {
+                None
+            } else if major <= tolerance.rounding {
+                Some(Form::Sphere { axis: Axis { about: foot(arc.center), ..axis }, radius: minor })
+            } else {
+                (major > minor + tolerance.point).then(|| Form::Torus { axis: Axis { about: foot(arc.center), ..axis }, major, minor })
+            }
+        }),
+    };
+    form.map(|form| (form, reference))
+}

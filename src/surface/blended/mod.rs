@@ -1,0 +1,10 @@
+//! Surfaces blended from curves: Coons and Gordon surfaces, ruled ones, plane faces, skins through sections.
+
+pub mod coons;
+pub mod gordon;
+pub mod plane_face;
+pub mod ruled;
+pub mod skin;
+pub mod skin_align;
+pub mod skin_ends;
+pub mod skin_fit;

@@ -1,0 +1,69 @@
+//! Straight lines between two curves.
+
+use crate::base::fault::{Fault, Result};
+use crate::base::origin::Origin;
+use crate::base::tolerance::Tolerance;
+use crate::geometry::build::line;
+use crate::network::Chain;
+use crate::surface::blended::coons::{borders, set_kinks};
+use crate::surface::core::shape::Shape;
+use crate::surface::core::surface::{Parts, Surface};
+use crate::surface::data::flow_words::phrase;
+use crate::surface::data::kind::{Domain, SurfaceKind};
+use crate::surface::rails::rail::Rail;
+use crate::surface::rails::reparam::Map;
+use crate::surface::rails::ring::Ring;
+use crate::surface::rails::side::{Border, Side};
+use crate::surface::shapes::blend::Blend;
+use crate::surface::shapes::weights::{Axis, Rule};
+
+/// The ruled surface S(u, v) = (1 − v) a(u) + v b(u), u the arc-length fraction of both.
+///
+/// `b` is read backwards when that makes the two end lines shorter together (the longer way crosses them), a closed one when it runs
+/// the other way round; closed curves are read from where they start. Ends that meet are poles. Returns warnings too (W614).
+pub fn ruled(a: &Chain, b: &Chain, origin: Origin, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
+    let closed = a.is_closed(tolerance) && b.is_closed(tolerance);
+    let apart = |b0: glam::DVec3, b1: glam::DVec3| a.start().distance_squared(b0) + a.end().distance_squared(b1);
+    let reversed =
+        if closed { Ring::of(a).runs_against(&Ring::of(b)) == Some(true) } else { apart(b.end(), b.start()) < apart(b.start(), b.end()) };
+    let other = Rail::new(b.clone(), if reversed { Map::reverse() } else { Map::identity() });
+    let rails = vec![Rail::new(a.clone(), Map::identity()), other];
+    let axis = || Axis::new(vec![0.0, 1.0], Rule::Lagrange);
+    let mut blend = Blend::new(axis(), axis(), Vec::new(), rails);
+    let mut notes = Vec::new();
+    let kinks = set_kinks(&mut blend, origin, tolerance, &mut notes);
+    let mut borders = borders(&blend);
+    let mut generated = Vec::new();
+    let mut poles = 0;
+    for (k, u) in [(1, 1.0), (3, 0.0)] {
+        let (from, to) = (blend.along_u()[0].point(u), blend.along_u()[1].point(u));
+        borders[k] = if closed && k == 1 {
+            continue;
+        } else if tolerance.same_point(from, to) {
+            poles += 1;
+            Border::straight(Side::Pole(0.5 * (from + to)))
+        } else {
+            let side = Chain::of_curve(&line(from, to, origin)?);
+            generated.push(side.clone());
+            Border::chain(side, false)
+        };
+    }
+    if closed {
+        borders[1] = borders[3].clone();
+    }
+    let surface = Surface::new(Parts {
+        origin,
+        kind: SurfaceKind::Ruled,
+        flow: phrase(poles, (closed, false)),
+        domain: Domain::Square,
+        closed: (closed, false),
+        borders,
+        kinks,
+        shape: Shape::Blend(blend),
+        chains: vec![a.clone(), b.clone()],
+        generated,
+        trim: None,
+        flipped: false,
+    });
+    Ok((surface, notes))
+}

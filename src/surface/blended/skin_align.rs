@@ -1,0 +1,202 @@
+//! How sections of a skin are read: each in the direction, and a closed one from the start, in which it twists least against the one
+//! before it.
+
+use glam::{DQuat, DVec3};
+
+use crate::base::fault::Result;
+use crate::base::quadrature::gauss_legendre;
+use crate::base::tolerance::{EPSILON, Tolerance};
+use crate::base::{job, solve};
+use crate::network::Chain;
+use crate::surface::rails::rail::Rail;
+use crate::surface::rails::reparam::Map;
+use crate::surface::rails::ring::{PLACES, Ring};
+
+/// Starts tried along a closed section before the best one is made better.
+const STARTS: usize = 64;
+/// Stretches over which squared distances are integrated, beside those between corners.
+const PANELS: usize = 16;
+/// Points of the rule for each of them.
+const ORDER: usize = 3;
+
+/// A section as it is read.
+#[derive(Clone, Debug)]
+pub enum Read {
+    /// A curve from its start, or backwards.
+    Curve(Chain, bool),
+    /// A point.
+    Point(DVec3),
+}
+
+impl Read {
+    /// At a share of its length.
+    pub fn point(&self, x: f64) -> DVec3 {
+        match self {
+            Self::Curve(chain, turned) => read((chain, 0.0, *turned), x),
+            Self::Point(p) => *p,
+        }
+    }
+
+    /// The curve that the surface has of it.
+    pub fn rail(&self) -> Rail {
+        match self {
+            Self::Curve(chain, turned) => Rail::new(chain.clone(), if *turned { Map::reverse() } else { Map::identity() }),
+            Self::Point(p) => Rail::Point(*p),
+        }
+    }
+}
+
+/// The sections as they are read; `round`: the curves among them are closed.
+pub fn aligned(sections: &[Section], round: bool, tolerance: &Tolerance) -> Result<Vec<Read>> {
+    let mut all: Vec<Read> = Vec::with_capacity(sections.len());
+    for section in sections {
+        job::look();
+        let before = all.iter().rev().find_map(|read| if let Read::Curve(chain, turned) = read { Some((chain, *turned)) } else { None });
+        let next = match (section, before) {
+            (Section::Point(p), _) => Read::Point(*p),
+            (Section::Curve(chain), None) => Read::Curve(chain.clone(), false),
+            (Section::Curve(chain), Some(before)) if round => nearest_start(before, chain, tolerance)?,
+            (Section::Curve(chain), Some(before)) => Read::Curve(chain.clone(), nearer_backwards(before, chain)),
+        };
+        all.push(next);
+    }
+    Ok(all)
+}
+
+/// Whether the last of some open sections runs against the first one.
+pub fn runs_back(aligned: &[Read]) -> bool {
+    let [Read::Curve(first, turned), .., Read::Curve(last, before)] = aligned else { return false };
+    nearer_backwards((last, *before), first) != *turned
+}
+
+/// v of the sections: sums of their mean distances, from 0 to 1; and their whole, model units. `closed`: the last one is joined to the
+/// first; `round`: the curves are closed.
+pub fn distances(aligned: &[Read], closed: bool, round: bool) -> (Vec<f64>, f64) {
+    let n = aligned.len();
+    let places = PLACES + usize::from(!round);
+    let at = |k: usize| k as f64 / PLACES as f64;
+    let mean = |a: &Read, b: &Read| (0..places).map(|k| a.point(at(k)).distance(b.point(at(k)))).sum::<f64>() / places as f64;
+    let mut sums = vec![0.0];
+    for k in 1..n + usize::from(closed) {
+        sums.push(sums[k - 1] + mean(&aligned[k - 1], &aligned[k % n]));
+    }
+    let last = sums.len() - 1;
+    let whole = sums[last];
+    let shares = sums.iter().enumerate().map(|(k, sum)| if k == last { 1.0 } else { sum / whole }).collect();
+    (shares, whole)
+}
+
+/// A section: `turn` of its length later, backwards or not.
+fn read((chain, turn, turned): (&Chain, f64, bool), x: f64) -> DVec3 {
+    let x = if turned { 1.0 - x } else { x };
+    let f = x + turn;
+    chain.point(if f > 1.0 { f - 1.0 } else { f })
+}
+
+/// Whether an open section comes nearer to the one before when it is read backwards.
+fn nearer_backwards((before, back): (&Chain, bool), chain: &Chain) -> bool {
+    let at = |k: usize| k as f64 / PLACES as f64;
+    let apart = |turned: bool| -> f64 {
+        (0..=PLACES).map(|k| read((before, 0.0, back), at(k)).distance_squared(read((chain, 0.0, turned), at(k)))).sum()
+    };
+    apart(true) < apart(false)
+}
+
+/// A closed section and the one that is to follow it.
+struct Pair<'a> {
+    before: (&'a Chain, bool),
+    section: &'a Chain,
+    /// Whether the second is read backwards.
+    turned: bool,
+    /// The rotation that brings the plane of the first into that of the second, and both centres.
+    turn: DQuat,
+    centers: (DVec3, DVec3),
+}
+
+impl<'a> Pair<'a> {
+    /// `a` and `b` are the rings of both, the second one as it is drawn.
+    fn new(before: (&'a Chain, bool), section: &'a Chain, turned: bool, (a, b): (Ring, Ring)) -> Self {
+        let b = if turned { b.turned() } else { b };
+        Self { before, section, turned, turn: a.rotation_to(&b), centers: (a.center, b.center) }
+    }
+
+    /// Where the first wants the second to be at a share of its length.
+    fn wanted(&self, x: f64) -> DVec3 {
+        self.centers.1 + self.turn * (read((self.before.0, 0.0, self.before.1), x) - self.centers.0)
+    }
+
+    /// Mean of squared distances of the second, read from a start, from places where it is wanted.
+    fn apart(&self, wanted: &[DVec3], start: f64) -> f64 {
+        let at = |k: usize| read((self.section, start, self.turned), k as f64 / wanted.len() as f64);
+        wanted.iter().enumerate().map(|(k, p)| p.distance_squared(at(k))).sum::<f64>() / wanted.len() as f64
+    }
+
+    /// Half the derivative of the integral of squared distances by the start, and its own; exact beside corners.
+    fn slope(&self, start: f64, corners: &[Vec<f64>; 2], rule: &[(f64, f64)]) -> (f64, f64) {
+        let own = |f: &f64| if self.turned { start - f } else { f - start };
+        let first = |f: &f64| if self.before.1 { 1.0 - f } else { *f };
+        let mut stops: Vec<f64> = corners[0].iter().map(first).chain(corners[1].iter().map(own)).map(|x| x.rem_euclid(1.0)).collect();
+        stops.extend((0..=PANELS).map(|k| k as f64 / PANELS as f64));
+        stops.sort_by(f64::total_cmp);
+        let (mut value, mut rise) = (0.0, 0.0);
+        for w in stops.windows(2).filter(|w| w[1] > w[0]) {
+            for (node, weight) in rule {
+                let x = 0.5 * (w[0] + w[1]) + 0.5 * (w[1] - w[0]) * node;
+                let f = (if self.turned { 1.0 - x } else { x }) + start;
+                let jet = self.section.jet(f.rem_euclid(1.0));
+                let off = jet.p - self.wanted(x);
+                let by = 0.5 * (w[1] - w[0]) * weight;
+                value += by * off.dot(jet.d1);
+                rise += by * (jet.d1.length_squared() + off.dot(jet.d2));
+            }
+        }
+        (value, rise)
+    }
+}
+
+/// A closed section in the direction in which a tube passes both, from the start at which it twists least against the one before, once
+/// both lie in one plane about one centre.
+///
+/// Corners go to corners: where both have equally many, only these are tried.
+fn nearest_start(before: (&Chain, bool), section: &Chain, tolerance: &Tolerance) -> Result<Read> {
+    let corners = [before.0, section].map(|chain| chain.kinks(tolerance).into_iter().filter(|f| *f < 1.0).collect::<Vec<_>>());
+    let kinked = corners[0].len() == corners[1].len() && !corners[1].is_empty();
+    let starts = if kinked { corners[1].clone() } else { (0..STARTS).map(|k| k as f64 / STARTS as f64).collect() };
+    let (ring, own) = (Ring::of(before.0), Ring::of(section));
+    let ring = if before.1 { ring.turned() } else { ring };
+    let against = ring.runs_against(&own);
+    let mut best: Option<(f64, f64, Pair)> = None;
+    for turned in against.map_or(vec![false, true], |turned| vec![turned]) {
+        let pair = Pair::new(before, section, turned, (ring, own));
+        let wanted: Vec<DVec3> = (0..PLACES).map(|k| pair.wanted(k as f64 / PLACES as f64)).collect();
+        let off = starts.iter().map(|start| (pair.apart(&wanted, *start), *start));
+        let nearer = |a: (f64, f64), b: (f64, f64)| if b.0 < a.0 * (1.0 - tolerance.parameter) { b } else { a };
+        let Some((miss, start)) = off.reduce(nearer) else { continue };
+        if best.as_ref().is_none_or(|(least, ..)| miss < least * (1.0 - tolerance.parameter)) {
+            best = Some((miss, start, pair));
+        }
+    }
+    let Some((_, mut start, pair)) = best else { return Ok(Read::Curve(section.clone(), false)) };
+    if !kinked && start != 0.0 {
+        let (step, rule) = (2.0 / STARTS as f64, gauss_legendre(ORDER));
+        let slope = |start: f64| pair.slope(start, &corners, &rule);
+        let (low, high) = (start - step, start + step);
+        if slope(low).0 < 0.0 && slope(high).0 > 0.0 {
+            start = solve::bracketed(low, high, EPSILON, slope).rem_euclid(1.0);
+        }
+    }
+    let turned = pair.turned;
+    if start * section.length() <= tolerance.point || (1.0 - start) * section.length() <= tolerance.point {
+        return Ok(Read::Curve(section.clone(), turned));
+    }
+    Ok(Read::Curve(section.slice(start, start, tolerance)?, turned))
+}
+
+/// What a skin goes through.
+#[derive(Clone, Debug)]
+pub enum Section {
+    /// A curve.
+    Curve(Chain),
+    /// A point, where the skin begins or ends in a pole.
+    Point(DVec3),
+}

@@ -1,0 +1,12 @@
+//! A surface of any kind: its shape with borders, kinks and loops, its bounds, and what is made of it for many evaluations.
+
+pub mod enclosure;
+pub mod evened;
+pub mod joined;
+pub mod plane;
+pub mod power_form;
+pub mod shape;
+pub mod square;
+pub mod surface;
+pub mod trim;
+pub mod trimmed;

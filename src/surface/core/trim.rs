@@ -1,0 +1,55 @@
+//! What a trimmed surface knows beside its borders.
+
+use glam::DVec2;
+
+use crate::surface::data::kind::Domain;
+use crate::surface::rails::trim_curve::TrimCurve;
+
+/// What a trimmed surface knows beside its borders.
+#[derive(Clone, Debug)]
+pub(crate) struct Trim {
+    /// Where the surface below is defined.
+    pub ground: Domain,
+    /// Number of borders of each loop, the outer one first.
+    pub loops: Vec<usize>,
+    /// One a border.
+    pub courses: Vec<TrimCurve>,
+    /// Corners of a box in (u, v) that holds the loops; where a surface closes they may lie whole turns away.
+    pub reach: (DVec2, DVec2),
+}
+
+// Where it lies in (u, v) follows from the borders and the surface below.
+crate::content!(Trim { loops } but { ground, courses, reach });
+
+/// A box in (u, v) that holds some courses: between two places a curve is nowhere farther from its chord than the chord is long.
+pub(crate) fn reach(courses: &[TrimCurve]) -> (DVec2, DVec2) {
+    let (mut low, mut high, mut longest) = (DVec2::INFINITY, DVec2::NEG_INFINITY, 0.0_f64);
+    for course in courses {
+        let places = course.places();
+        if matches!(course, TrimCurve::Pcurve(_)) {
+            longest = places.windows(2).map(|w| w[0].distance(w[1])).fold(longest, f64::max);
+        }
+        for p in places {
+            (low, high) = (low.min(p), high.max(p));
+        }
+    }
+    (low - DVec2::splat(longest), high + DVec2::splat(longest))
+}
+
+impl Trim {
+    pub fn flipped(&self) -> Self {
+        let mut courses = Vec::with_capacity(self.courses.len());
+        let mut first = 0;
+        let turn = |(u, v): (f64, f64)| if self.ground == Domain::Triangle { (v, u) } else { (u, 1.0 - v) };
+        for n in &self.loops {
+            courses.extend(self.courses[first..first + n].iter().rev().map(|c| c.flipped(&turn)));
+            first += n;
+        }
+        self.with_courses(courses)
+    }
+
+    /// The same by other courses.
+    pub fn with_courses(&self, courses: Vec<TrimCurve>) -> Self {
+        Self { reach: reach(&courses), courses, ..self.clone() }
+    }
+}

@@ -1,0 +1,169 @@
+//! From one common place of two patches to the next, to their borders or round to the start.
+
+use glam::{DVec2, DVec3};
+
+use crate::base::job;
+use crate::base::tolerance::{EPSILON, NUDGE};
+use crate::surface::intersect::pair::{Pair, Spot};
+use crate::surface::intersect::sheet::{Line, Patch};
+
+/// A line in which two patches meet: places in a row.
+#[derive(Clone, Debug)]
+pub(crate) struct Branch {
+    pub spots: Vec<Spot>,
+}
+
+/// Largest turn from one place to the next, as a cosine, and the one below which steps grow.
+const TURN: (f64, f64) = (0.97, 0.995);
+/// Places in a row at most.
+const MOST: usize = 20_000;
+
+impl Pair<'_> {
+    /// The whole line through a place; the place where the march failed when it did.
+    pub fn march(&self, start: Spot, size: f64) -> Result<Branch, DVec3> {
+        let (mut spots, closed) = self.run(start, size)?;
+        if closed {
+            return Ok(Branch { spots });
+        }
+        let back = Spot { way: -start.way, ..start };
+        let (behind, _) = self.run(back, size)?;
+        let turned = behind.into_iter().skip(1).map(|s| Spot { way: -s.way, ..s });
+        let mut all: Vec<Spot> = turned.collect();
+        all.reverse();
+        all.append(&mut spots);
+        Ok(Branch { spots: all })
+    }
+
+    /// Goes one way; whether it came back to the start.
+    fn run(&self, start: Spot, size: f64) -> Result<(Vec<Spot>, bool), DVec3> {
+        const FIRST: f64 = 1.0 / 64.0;
+        const LARGEST: f64 = 1.0 / 16.0;
+        let mut spots = vec![start];
+        let mut h = FIRST * size;
+        while spots.len() < MOST {
+            job::look();
+            let here = spots[spots.len() - 1];
+            if h < NUDGE * NUDGE * size {
+                return Err(here.p);
+            }
+            let Some((a, b)) = self.ahead(&here, here.way * h) else { return self.stopped(spots, here) };
+            if let Some((share, first, line)) = self.leaves(&here, a, b) {
+                if share <= EPSILON {
+                    return Ok((spots, false));
+                }
+                let (x, y) = (here.a.lerp(a, share), here.b.lerp(b, share));
+                match self.on_border(first, line, x, y) {
+                    Some(end) if fits(&here, &end, h) && self.is_in(&end) && as_far(&here, &end, share * h, size) => {
+                        if end.p.distance(here.p) > EPSILON * size {
+                            spots.push(self.aligned(&here, end));
+                        }
+                        return Ok((spots, false));
+                    }
+                    _ => {
+                        h *= 0.5;
+                        continue;
+                    }
+                }
+            }
+            let target = here.p + here.way * h;
+            let next = self.correct(a, b, Some((target, here.way))).map(|next| self.aligned(&here, next));
+            match next {
+                Some(next) if fits(&here, &next, h) && next.way.dot(here.way) >= TURN.0 => {
+                    if spots.len() > 2 && closes(&start, &here, &next) {
+                        spots.push(start);
+                        return Ok((spots, true));
+                    }
+                    spots.push(next);
+                    if next.way.dot(here.way) >= TURN.1 {
+                        h = (1.5 * h).min(LARGEST * size);
+                    }
+                }
+                _ => h *= 0.5,
+            }
+        }
+        Err(spots[spots.len() - 1].p)
+    }
+
+    /// At a place where a patch is singular the line ends, when that is a pole on its border.
+    fn stopped(&self, spots: Vec<Spot>, here: Spot) -> Result<(Vec<Spot>, bool), DVec3> {
+        let at_border = |patch: &Patch, uv: DVec2| patch.lines().into_iter().any(|line| line.inside(patch, uv) <= EPSILON);
+        if at_border(self.a, here.a) || at_border(self.b, here.b) { Ok((spots, false)) } else { Err(here.p) }
+    }
+
+    /// The direction in the sense of the way before; where the patches touch, straight on.
+    fn aligned(&self, before: &Spot, spot: Spot) -> Spot {
+        let chord = (spot.p - before.p).normalize_or_zero();
+        let way = if spot.sine <= NUDGE { chord } else { spot.way };
+        let against = if chord == DVec3::ZERO { before.way.dot(way) < 0.0 } else { chord.dot(way) < 0.0 };
+        Spot { way: if against { -way } else { way }, ..spot }
+    }
+
+    /// The first border on the way to a place outside: share of the way, whether it is of the first patch, and the border.
+    fn leaves(&self, here: &Spot, a: DVec2, b: DVec2) -> Option<(f64, bool, Line)> {
+        let mut best: Option<(f64, bool, Line)> = None;
+        for (first, patch, from, to) in [(true, self.a, here.a, a), (false, self.b, here.b, b)] {
+            for line in patch.lines() {
+                let (x, y) = (line.inside(patch, from), line.inside(patch, to));
+                if y < -NUDGE * NUDGE {
+                    let share = (x / (x - y)).clamp(0.0, 1.0);
+                    if best.is_none_or(|(s, ..)| share < s) {
+                        best = Some((share, first, line));
+                    }
+                }
+            }
+        }
+        best
+    }
+
+    fn is_in(&self, spot: &Spot) -> bool {
+        let within = |patch: &Patch, uv: DVec2| patch.lines().into_iter().all(|line| line.inside(patch, uv) >= -NUDGE * NUDGE);
+        within(self.a, spot.a) && within(self.b, spot.b)
+    }
+
+    /// The place of a branch in the plane across its chord through a point, when the branch passes there.
+    pub fn passes(&self, branch: &Branch, at: &Spot) -> bool {
+        branch.spots.windows(2).any(|w| {
+            let (from, to) = (w[0].p, w[1].p);
+            let chord = to - from;
+            let length = chord.length();
+            if length == 0.0 {
+                return false;
+            }
+            let share = (at.p - from).dot(chord) / (length * length);
+            let near = (from + chord * share).distance(at.p);
+            if !(-0.01..=1.01).contains(&share) || near > 0.5 * length {
+                return false;
+            }
+            let (a, b) = (w[0].a.lerp(w[1].a, share), w[0].b.lerp(w[1].b, share));
+            self.correct(a, b, Some((at.p, chord / length))).is_some_and(|s| s.p.distance(at.p) <= self.point)
+        })
+    }
+}
+
+/// Whether a place is about where a step was to lead.
+fn fits(here: &Spot, next: &Spot, h: f64) -> bool {
+    let step = next.p - here.p;
+    let along = step.dot(here.way);
+    along >= -EPSILON && step.length() <= 1.5 * h && step.distance(here.way * along) <= 0.25 * h.max(along)
+}
+
+/// Whether a place on a border is about as far as was foreseen: a closed surface has the same place on its other border too.
+fn as_far(here: &Spot, end: &Spot, foreseen: f64, size: f64) -> bool {
+    const UNLIKE: f64 = 4.0;
+    let far = end.p.distance(here.p);
+    far <= UNLIKE * foreseen + NUDGE * NUDGE * size && foreseen <= UNLIKE * far + NUDGE * NUDGE * size
+}
+
+/// Whether the start lies between two places.
+fn closes(start: &Spot, here: &Spot, next: &Spot) -> bool {
+    let chord = next.p - here.p;
+    let share = (start.p - here.p).dot(chord) / chord.length_squared();
+    let aside = (start.p - here.p - chord * share).length();
+    // As far along the other domain as in space, so that another sheet that passes here does not count.
+    let near = |from: DVec2, to: DVec2, at: DVec2| at.distance(from.lerp(to, share)) <= from.distance(to);
+    (0.0..=1.0).contains(&share)
+        && aside <= 0.25 * chord.length()
+        && start.way.dot(chord) > 0.0
+        && near(here.a, next.a, start.a)
+        && near(here.b, next.b, start.b)
+}

@@ -1,0 +1,14 @@
+//! Where surfaces meet curves, each other and themselves: subdivision with guaranteed bounds, Newton's method where there is one meeting
+//! or one line.
+
+pub mod coplanar;
+pub mod curve_patch;
+pub mod fit;
+pub mod join_curves;
+pub mod march;
+pub mod pair;
+pub mod patch_pair;
+pub mod self_intersection;
+pub mod sheet;
+pub mod with_curve;
+pub mod with_surfaces;

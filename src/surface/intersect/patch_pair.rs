@@ -1,0 +1,197 @@
+//! Where two patches may meet: subdivision of pairs of cells with guaranteed bounds.
+//!
+//! A pair is dropped when the two cells are further apart than the tolerance. Where no two tangent planes of a pair are
+//! parallel the common places lie one behind the other, so a place on a line that is known settles the pair; a place on
+//! none begins a march. Pairs without such a place are halved: no line is missed that is longer than a few tolerances.
+//! What stays parallel down to flat cells touches.
+
+use glam::DVec3;
+
+use crate::base::bbox::Box3;
+use crate::base::job;
+use crate::surface::closest::foot::Footing;
+use crate::surface::intersect::march::Branch;
+use crate::surface::intersect::pair::{Pair, Spot};
+use crate::surface::intersect::sheet::{Cell, Sheet};
+
+/// Pairs looked at before giving up; a solved place counts as many as it costs.
+const MOST_PAIRS: usize = 300_000;
+/// What a place that is solved for, or a touch, costs in pairs.
+const SOLVED: usize = 2;
+/// Share of the tolerance within which cells count as flat.
+const FINE: f64 = 0.25;
+/// Flat cells that part by no more than this many tolerances run along each other.
+const DIVERGENCE: f64 = 4.0;
+/// Share of the tolerance within which cells that cross must come.
+const EXACT: f64 = 1.0 / 1024.0;
+/// Pairs of flat cells that touch, at most.
+const MOST_TOUCHES: usize = 2_000;
+/// Cells smaller than this many tolerances are not halved to find a place between their corners.
+const SMALLEST: f64 = 16.0;
+/// Share of the smaller patch below which, however large the tolerance is.
+const SHARE: f64 = 1.0 / 64.0;
+
+/// What two patches have in common.
+#[derive(Debug, Default)]
+pub(crate) struct Common {
+    pub branches: Vec<Branch>,
+    /// Boxes of what touches without crossing.
+    pub touches: Vec<Box3>,
+}
+
+/// Why a search ended early.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Stopped {
+    /// They run along each other here.
+    Along(DVec3),
+    /// Too much work, or a march that came to a halt.
+    Lost(DVec3),
+}
+
+struct Search<'a> {
+    a: &'a mut Sheet,
+    b: &'a mut Sheet,
+    point: f64,
+    /// Size of the smaller one.
+    size: f64,
+    /// What stays within the tolerance for longer is no touch.
+    long: f64,
+    touched: Box3,
+    common: Common,
+    looked_at: usize,
+}
+
+/// The lines in which two patches meet, and where they touch.
+pub(crate) fn common(a: &mut Sheet, b: &mut Sheet, point: f64, long: f64) -> Result<Common, Stopped> {
+    let size = a.bounds().diagonal().min(b.bounds().diagonal());
+    let (roots_a, roots_b) = (a.roots.clone(), b.roots.clone());
+    let mut search = Search { a, b, point, size, long, touched: Box3::EMPTY, common: Common::default(), looked_at: 0 };
+    for i in roots_a {
+        for j in &roots_b {
+            job::look();
+            search.pair(i, *j)?;
+        }
+    }
+    Ok(search.common)
+}
+
+impl Search<'_> {
+    fn pair(&mut self, i: usize, j: usize) -> Result<(), Stopped> {
+        self.looked_at += 1;
+        let (x, y) = (self.a.cell(i), self.b.cell(j));
+        if self.a.is_outside(i) || self.b.is_outside(j) || apart(x, y, self.point) {
+            return Ok(());
+        }
+        if self.looked_at > MOST_PAIRS {
+            return Err(Stopped::Lost(x.enclosure.mid.p));
+        }
+        let fine = x.thick.max(y.thick) <= FINE * self.point;
+        // Flat cells that part by no more than a few tolerances run along each other.
+        let slow = fine && x.normal.cross(y.normal).length() * x.reach().min(y.reach()) <= DIVERGENCE * self.point;
+        if !slow && crosses(x, y) {
+            if apart(x, y, EXACT * self.point) || self.settled(i, j)? {
+                return Ok(());
+            }
+        } else if fine {
+            return self.touch(i, j);
+        }
+        let (x, y) = (self.a.cell(i), self.b.cell(j));
+        if x.reach().max(y.reach()) <= (SMALLEST * self.point).min(SHARE * self.size) {
+            return Ok(());
+        }
+        let first = x.reach() >= y.reach();
+        let halves = if first { self.a.halves(i) } else { self.b.halves(j) };
+        match (halves, first) {
+            (Some((k, l)), true) => {
+                self.pair(k, j)?;
+                self.pair(l, j)
+            }
+            (Some((k, l)), false) => {
+                self.pair(i, k)?;
+                self.pair(i, l)
+            }
+            (None, _) => Ok(()),
+        }
+    }
+
+    /// Whether a common place of two cells is known; a new one is marched from.
+    fn settled(&mut self, i: usize, j: usize) -> Result<bool, Stopped> {
+        self.looked_at += SOLVED;
+        let (x, y) = (self.a.cell(i), self.b.cell(j));
+        let pair = Pair { a: &self.a.patch, b: &self.b.patch, point: self.point };
+        let Some(spot) = pair.correct(x.middle(), y.middle(), None) else { return Ok(false) };
+        let Some(spot) = inside(&pair, x, y, spot) else { return Ok(false) };
+        if !self.common.branches.iter().any(|branch| pair.passes(branch, &spot)) {
+            let branch = pair.march(spot, self.size).map_err(Stopped::Lost)?;
+            self.common.branches.push(branch);
+        }
+        Ok(true)
+    }
+
+    /// Flat cells along each other: a touch when they come within the tolerance.
+    fn touch(&mut self, i: usize, j: usize) -> Result<(), Stopped> {
+        const ROUNDS: usize = 16;
+        self.looked_at += SOLVED;
+        let (x, y) = (self.a.cell(i), self.b.cell(j));
+        let (mut a, mut b) = (x.middle(), y.middle());
+        let mut gap = f64::INFINITY;
+        let mut at = x.enclosure.mid.p;
+        for _ in 0..ROUNDS {
+            job::look();
+            b = y.hold(self.b.patch.foot(self.a.patch.jet(a).p, b).0);
+            a = x.hold(self.a.patch.foot(self.b.patch.jet(b).p, a).0);
+            at = self.a.patch.jet(a).p;
+            gap = gap.min(at.distance(self.b.patch.jet(b).p));
+        }
+        if gap > self.point {
+            return Ok(());
+        }
+        let extent = Box3 { min: x.bounds.min.max(y.bounds.min), max: x.bounds.max.min(y.bounds.max) };
+        let extent = extent.with(at);
+        self.touched = self.touched.union(extent);
+        self.common.touches.push(extent);
+        // A single touch may have many cells where parameters crowd, at a pole.
+        let enclosure = self.touched.diagonal() > self.long;
+        if self.common.touches.len() > if enclosure { MOST_TOUCHES } else { MOST_PAIRS / 4 } { Err(Stopped::Along(at)) } else { Ok(()) }
+    }
+}
+
+/// The place on the line through another one that is farthest inside two cells, when it is in both.
+pub(crate) fn inside(pair: &Pair, x: &Cell, y: &Cell, spot: Spot) -> Option<Spot> {
+    let (a, b) = pair.ahead(&spot, spot.way)?;
+    let (da, db) = (a - spot.a, b - spot.b);
+    let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
+    let four = [(spot.a.x, da.x, x.u), (spot.a.y, da.y, x.v), (spot.b.x, db.x, y.u), (spot.b.y, db.y, y.v)];
+    for (at, rate, (from, to)) in four {
+        if rate == 0.0 {
+            continue;
+        }
+        let (s, t) = ((from - at) / rate, (to - at) / rate);
+        (low, high) = (low.max(s.min(t)), high.min(s.max(t)));
+    }
+    let way = 0.5 * (low + high);
+    let found = if way.is_finite() && !(x.holds(spot.a) && y.holds(spot.b)) {
+        let (a, b) = (x.hold(spot.a + da * way), y.hold(spot.b + db * way));
+        pair.correct(a, b, Some((spot.p + spot.way * way, spot.way)))?
+    } else {
+        spot
+    };
+    (x.holds(found.a) && y.holds(found.b)).then_some(found)
+}
+
+/// Whether two cells are further apart than a distance.
+pub(crate) fn apart(x: &Cell, y: &Cell, point: f64) -> bool {
+    if !x.bounds.touches(&y.bounds, point) {
+        return true;
+    }
+    [x.normal, y.normal].into_iter().any(|n| {
+        let (r, s) = (x.along(n), y.along(n));
+        n != DVec3::ZERO && (r.low > s.high + point || s.low > r.high + point)
+    })
+}
+
+/// Whether no two tangent planes are parallel, and all common directions are on one side of a plane.
+pub(crate) fn crosses(x: &Cell, y: &Cell) -> bool {
+    let way = x.normal.cross(y.normal).normalize_or_zero();
+    way != DVec3::ZERO && x.normals.cross(&y.normals).along(way).low > 0.0
+}

@@ -1,0 +1,235 @@
+//! Where surfaces meet curves: subdivision with guaranteed bounds, Newton's method where there is one meeting
+//! or one line. `docs/notes/intersections.md` has the reasons.
+
+use glam::{DVec2, DVec3};
+
+use crate::base::fault::{CurveFault, NetworkFault, Result};
+use crate::base::origin::Origin;
+use crate::base::tolerance::{ROUNDING_SHARE, Tolerance};
+use crate::geometry::Curve;
+use crate::network::snap::may_snap;
+use crate::network::{Chain, meet as meet_chains};
+use crate::surface::closest::nearest::{Nearest, closest};
+use crate::surface::core::surface::Surface;
+use crate::surface::data::kind::Domain;
+use crate::surface::intersect::curve_patch::{Contact, Touch, contacts};
+use crate::surface::intersect::sheet::{Patch, Sheet, grounded, patches};
+use crate::surface::rails::side::Side;
+use crate::surface::trims::holes::with_loops;
+
+/// A meeting of a curve and a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfaceMeeting {
+    /// The place, on the curve.
+    pub point: DVec3,
+    /// Arc-length fraction of the curve.
+    pub f: f64,
+    /// Place on the surface.
+    pub uv: (f64, f64),
+    /// Where a stretch that lies on the surface ends.
+    pub shared_to: Option<f64>,
+}
+
+/// What stays within the tolerance of a surface for longer lies on it: eight times what a curve as bent as the model is large
+/// does that merely touches.
+pub(crate) fn long(tolerance: &Tolerance, size: f64) -> f64 {
+    const TOUCH: f64 = 8.0;
+    TOUCH * (tolerance.point * size.min(tolerance.rounding / ROUNDING_SHARE)).sqrt()
+}
+
+/// All meetings of a curve and surfaces within the tolerance, in order along the curve, each place once.
+///
+/// A touch is one meeting, a stretch that lies on a surface one with both its ends. Of a trimmed surface only the kept
+/// part counts. E413 when the work exceeds its limit.
+pub fn with_curve(chain: &Chain, surfaces: &[Surface], tolerance: &Tolerance) -> Result<Vec<SurfaceMeeting>> {
+    let mut all: Vec<SurfaceMeeting> = Vec::new();
+    for surface in surfaces {
+        all.extend(with_one(chain, surface, tolerance)?);
+    }
+    all.sort_by(|a, b| a.f.total_cmp(&b.f));
+    let near = tolerance.point / chain.length();
+    let mut out: Vec<SurfaceMeeting> = Vec::with_capacity(all.len());
+    for m in all {
+        match out.last_mut() {
+            // Faces side by side share the place on their edge, and stretches go on.
+            Some(last) if m.f <= last.shared_to.unwrap_or(last.f) + 2.0 * near => {
+                if let Some(to) = m.shared_to {
+                    last.shared_to = Some(last.shared_to.map_or(to, |f| f.max(to)));
+                }
+            }
+            _ => out.push(m),
+        }
+    }
+    Ok(out)
+}
+
+fn with_one(chain: &Chain, surface: &Surface, tolerance: &Tolerance) -> Result<Vec<SurfaceMeeting>> {
+    let curve = chain.to_curve()?;
+    let surface = &with_loops(surface, tolerance)?;
+    let ground = grounded(surface, curve.bbox());
+    let mut found: Vec<Contact> = Vec::new();
+    for patch in patches(&ground) {
+        found.extend(on_patch(&curve, patch, tolerance)?);
+    }
+    let length = curve.length();
+    let fraction = |t: f64| curve.length_at(t) / length;
+    let (mut stretches, mut points): (Vec<(f64, f64)>, Vec<Touch>) = (Vec::new(), Vec::new());
+    for contact in found {
+        match contact {
+            Contact::Stretch { t } => stretches.push((fraction(t.0), fraction(t.1))),
+            Contact::Point(touch) => points.push(Touch { t: fraction(touch.t), ..touch }),
+        }
+    }
+    let near = tolerance.point / length;
+    let mut out = Vec::new();
+    for (from, to) in kept_stretches(chain, surface, united(stretches, near), tolerance)? {
+        let uv = closest(surface, chain.point(from)).uv;
+        out.push(SurfaceMeeting { point: chain.point(from), f: from, uv, shared_to: Some(to) });
+    }
+    // The start of a closed curve stands for its end.
+    if chain.is_closed(tolerance) {
+        points.iter_mut().filter(|t| t.t >= 1.0 - near).for_each(|t| t.t = 0.0);
+    }
+    for touch in distinct(points, length, tolerance) {
+        let on_stretch = out.iter().any(|m| m.shared_to.is_some_and(|to| m.f - near <= touch.t && touch.t <= to + near));
+        if !on_stretch && surface.keeps_point(touch.p, touch.uv, tolerance.point) {
+            let at_end = [(0.0, chain.start()), (1.0, chain.end())].into_iter().find(|(f, _)| (f - touch.t).abs() <= near);
+            let (f, point) = at_end.filter(|_| !chain.is_closed(tolerance)).unwrap_or((touch.t, chain.point(touch.t)));
+            out.push(SurfaceMeeting { point, f, uv: touch.uv.into(), shared_to: None });
+        }
+    }
+    out.sort_by(|a, b| a.f.total_cmp(&b.f));
+    Ok(out)
+}
+
+/// Meetings of a curve with one patch.
+fn on_patch(curve: &Curve, patch: Patch, tolerance: &Tolerance) -> Result<Vec<Contact>> {
+    let mut sheet = Sheet::new(patch);
+    let size = curve.bbox().diagonal().min(sheet.bounds().diagonal());
+    contacts(curve, &mut sheet, tolerance.point, long(tolerance, size)).map_err(|at| {
+        let what = "where the curve meets the surface".to_owned();
+        CurveFault::NotConverged { of: curve.origin(), what, at }.into()
+    })
+}
+
+/// Stretches that touch or overlap as one, ascending.
+fn united(mut stretches: Vec<(f64, f64)>, near: f64) -> Vec<(f64, f64)> {
+    stretches.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut out: Vec<(f64, f64)> = Vec::new();
+    for (from, to) in stretches {
+        match out.last_mut() {
+            Some(last) if from <= last.1 + near => last.1 = last.1.max(to),
+            _ => out.push((from, to)),
+        }
+    }
+    out
+}
+
+/// Each place once: the nearest of those that are one meeting.
+fn distinct(mut points: Vec<Touch>, length: f64, tolerance: &Tolerance) -> Vec<Touch> {
+    const SAME: f64 = 4.0;
+    points.sort_by(|a, b| a.gap.total_cmp(&b.gap).then(a.t.total_cmp(&b.t)));
+    let mut kept: Vec<Touch> = Vec::new();
+    for touch in points {
+        // Where the curve leaves the surface slowly all of a long way is within the tolerance.
+        let slow = if touch.gap > tolerance.rounding { 2.0 * tolerance.point / touch.sine.max(ROUNDING_SHARE) } else { 0.0 };
+        let reach = slow.max(SAME * tolerance.point);
+        let same = |k: &Touch| (k.t - touch.t).abs() * length <= reach && k.p.distance(touch.p) <= reach;
+        if !kept.iter().any(same) {
+            kept.push(touch);
+        }
+    }
+    kept
+}
+
+/// The parts of stretches that lie in the kept part of a trimmed surface.
+pub(crate) fn kept_stretches(
+    chain: &Chain,
+    surface: &Surface,
+    stretches: Vec<(f64, f64)>,
+    tolerance: &Tolerance,
+) -> Result<Vec<(f64, f64)>> {
+    if surface.domain() != Domain::Loop {
+        return Ok(stretches);
+    }
+    let mut cuts = Vec::new();
+    for k in 0..surface.n_sides() {
+        if let Side::Chain { chain: border, .. } = surface.side(k) {
+            for m in meet_chains(chain, &border, tolerance)? {
+                cuts.push(m.fa);
+                cuts.extend(m.shared_to.map(|(fa, _)| fa));
+            }
+        }
+    }
+    cuts.sort_by(f64::total_cmp);
+    let mut out: Vec<(f64, f64)> = Vec::new();
+    let near = tolerance.point / chain.length();
+    let below = Nearest::new(&surface.untrimmed());
+    for (from, to) in stretches {
+        let inner = cuts.iter().copied().filter(|f| *f > from + near && *f < to - near);
+        let stops: Vec<f64> = std::iter::once(from).chain(inner).chain(std::iter::once(to)).collect();
+        for w in stops.windows(2) {
+            let p = chain.point(0.5 * (w[0] + w[1]));
+            let foot = below.at(p);
+            if surface.keeps_point(p, DVec2::new(foot.uv.0, foot.uv.1), tolerance.point) {
+                match out.last_mut() {
+                    Some(last) if last.1 >= w[0] - near => last.1 = w[1],
+                    _ => out.push((w[0], w[1])),
+                }
+            }
+        }
+    }
+    Ok(out)
+}
+
+/// The one place where a curve and a surface meet; none, several or a shared run are E507, E508, E509 with candidates and
+/// the closest miss.
+pub fn with_curve_once(chain: &Chain, surfaces: &[Surface], tolerance: &Tolerance) -> Result<SurfaceMeeting> {
+    let meetings = with_curve(chain, surfaces, tolerance)?;
+    let runs: Vec<(DVec3, DVec3)> = meetings.iter().filter_map(|m| m.shared_to.map(|to| (m.point, chain.point(to)))).collect();
+    let (a, b) = (chain.origin(), surfaces.first().map_or(Origin::NONE, Surface::origin));
+    if !runs.is_empty() {
+        return Err(NetworkFault::SharesRun { a, b, runs }.into());
+    }
+    match meetings.as_slice() {
+        [one] => Ok(*one),
+        [] => {
+            let pairs = surfaces.iter().map(|surface| (closest_points(chain, surface), surface.origin()));
+            let nearest = pairs.min_by(|x, y| x.0.0.distance(x.0.1).total_cmp(&y.0.0.distance(y.0.1)));
+            let ((pa, pb), b) = nearest.unwrap_or(((chain.start(), chain.start()), b));
+            let near = may_snap(pa.distance(pb), chain.length());
+            Err(NetworkFault::NoMeeting { a: (a, pa), b: (b, pb), near, tolerance: tolerance.point }.into())
+        }
+        several => {
+            let candidates = several.iter().map(|m| (m.point, m.f)).collect();
+            Err(NetworkFault::SeveralMeetings { a, b, candidates }.into())
+        }
+    }
+}
+
+/// About the nearest points of a curve and a surface, from samples of the curve made better by turns.
+fn closest_points(chain: &Chain, surface: &Surface) -> (DVec3, DVec3) {
+    const SAMPLES: usize = 64;
+    const ROUNDS: usize = 32;
+    let nearest = Nearest::new(surface);
+    let at = |f: f64| {
+        let p = chain.point(f);
+        (p, nearest.at(p).point)
+    };
+    let gap = |pair: &(DVec3, DVec3)| pair.0.distance(pair.1);
+    let mut best = at(0.0);
+    for k in 1..=SAMPLES {
+        let next = at(k as f64 / SAMPLES as f64);
+        if gap(&next) < gap(&best) {
+            best = next;
+        }
+    }
+    for _ in 0..ROUNDS {
+        let next = at(chain.closest(best.1).0);
+        if gap(&next) >= gap(&best) {
+            break;
+        }
+        best = next;
+    }
+    best
+}

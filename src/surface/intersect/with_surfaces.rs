@@ -1,0 +1,216 @@
+//! The curves in which surfaces meet.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use crate::base::bbox::Box3;
+use crate::base::fault::{CurveFault, CutFault, Fault, Result};
+use crate::base::job;
+use crate::base::origin::Origin;
+use crate::base::tolerance::Tolerance;
+use crate::geometry::curve::Shape;
+use crate::geometry::{Curve, Kind, Nurbs, build};
+use crate::network::Chain;
+use crate::surface::core::surface::Surface;
+use crate::surface::data::kind::Domain;
+use crate::surface::intersect::coplanar::{Coplanar, overlap};
+use crate::surface::intersect::join_curves::{self, STRAIGHT};
+use crate::surface::intersect::pair::Pair;
+use crate::surface::intersect::patch_pair::{Stopped, common};
+use crate::surface::intersect::sheet::{Sheet, patches, widely_grounded};
+use crate::surface::intersect::with_curve::{kept_stretches, long};
+use crate::surface::trims::holes::with_loops;
+
+/// What two sets of surfaces have in common.
+#[derive(Clone, Debug, Default)]
+pub struct Common {
+    /// The curves in which they cross, ordered by their first points (x, then y, then z).
+    pub curves: Vec<Chain>,
+    /// Places where they touch without crossing.
+    pub touches: Vec<DVec3>,
+}
+
+/// The curves in which surfaces of two sets meet, each within a quarter of the tolerance of both.
+///
+/// Straight ones are lines. Curves go on from face to face; of trimmed surfaces only the kept parts count. E657 where two
+/// run along each other, E413 when the work exceeds its limit.
+pub fn with_surfaces(a: &[Surface], b: &[Surface], origin: Origin, tolerance: &Tolerance) -> Result<Common> {
+    let mut pieces: Vec<Curve> = Vec::new();
+    let mut touches: Vec<DVec3> = Vec::new();
+    for x in a {
+        for y in b {
+            let found = of_two(x, y, origin, tolerance)?;
+            pieces.extend(found.0);
+            touches.extend(found.1);
+        }
+    }
+    let distinct = once(pieces, tolerance);
+    let mut curves = Vec::new();
+    for row in join_curves::joined(distinct, tolerance) {
+        curves.push(Chain::of_curve(&row.with_origin(origin)));
+    }
+    touches.retain(|p| curves.iter().all(|c| c.closest(*p).2 > long(tolerance, f64::INFINITY)));
+    curves.sort_by(|x, y| lexical(x.start(), y.start()).then(lexical(x.point(0.5), y.point(0.5))));
+    Ok(Common { curves, touches })
+}
+
+/// The one curve in which surfaces meet; none or several are E507 and E508 with what there is.
+pub fn with_surfaces_once(a: &[Surface], b: &[Surface], origin: Origin, tolerance: &Tolerance) -> Result<Chain> {
+    let common = with_surfaces(a, b, origin, tolerance)?;
+    let of = |list: &[Surface]| list.first().map_or(Origin::NONE, Surface::origin);
+    let (a, b) = (of(a), of(b));
+    match common.curves.as_slice() {
+        [one] => Ok(one.clone()),
+        [] => Err(CutFault::NoCurve { a, b, touch: common.touches.first().copied(), tolerance: tolerance.point }.into()),
+        several => {
+            let curves = several.iter().map(|c| (c.point(0.5), c.length())).collect();
+            Err(CutFault::SeveralCurves { a, b, curves }.into())
+        }
+    }
+}
+
+fn lexical(a: DVec3, b: DVec3) -> std::cmp::Ordering {
+    a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)).then(a.z.total_cmp(&b.z))
+}
+
+/// Curves and touches of two surfaces.
+fn of_two(a: &Surface, b: &Surface, origin: Origin, tolerance: &Tolerance) -> Result<(Vec<Curve>, Vec<DVec3>)> {
+    let (a, b) = (&with_loops(a, tolerance)?, &with_loops(b, tolerance)?);
+    let reach = |s: &Surface| (s.ground() != Domain::Unbounded).then(|| s.hull());
+    let (box_a, box_b) = match (reach(a), reach(b)) {
+        (Some(x), Some(y)) => (x, y),
+        (Some(x), None) => (x, x),
+        (None, Some(y)) => (y, y),
+        (None, None) => return Err(CutFault::WithoutEnd { of: origin }.into()),
+    };
+    if !box_a.touches(&box_b, tolerance.point) {
+        return Ok((Vec::new(), Vec::new()));
+    }
+    let (mut sheets_a, mut sheets_b) = (sheets(&widely_grounded(a, box_b)), sheets(&widely_grounded(b, box_a)));
+    let lost =
+        |at: DVec3| Fault::from(CurveFault::NotConverged { of: origin, what: "the curve in which the surfaces meet".to_owned(), at });
+    let along = |at: DVec3| Fault::from(CutFault::RunAlong { a: a.origin(), b: b.origin(), at, tolerance: tolerance.point });
+    let (mut curves, mut touches, mut coplanar) = (Vec::new(), Vec::new(), None);
+    for x in &mut sheets_a {
+        for y in &mut sheets_b {
+            job::look();
+            if !x.bounds().touches(&y.bounds(), tolerance.point) {
+                continue;
+            }
+            let found = common(x, y, tolerance.point, long(tolerance, f64::INFINITY)).map_err(|stopped| match stopped {
+                Stopped::Along(at) => along(at),
+                Stopped::Lost(at) => lost(at),
+            })?;
+            let pair = Pair { a: &x.patch, b: &y.patch, point: tolerance.point };
+            let mut own = Vec::new();
+            for branch in &found.branches {
+                let cubics = pair.fitted(branch, &lost)?;
+                own.extend(curve(&cubics, origin, tolerance)?);
+            }
+            for extent in clusters(&found.touches, tolerance.point) {
+                let at = extent.center();
+                let known =
+                    own.iter().any(|c: &Curve| Chain::of_curve(c).closest(at).2 <= extent.diagonal() + long(tolerance, extent.diagonal()));
+                if known {
+                    continue;
+                }
+                if extent.diagonal() > long(tolerance, f64::INFINITY) {
+                    let known = match coplanar {
+                        Some(known) => known,
+                        None => *coplanar.insert(overlap(a, b, tolerance)?),
+                    };
+                    match known {
+                        Coplanar::Apart => continue,
+                        Coplanar::Overlap(place) => return Err(along(place)),
+                        Coplanar::Unknown => return Err(along(at)),
+                    }
+                }
+                touches.push(at);
+            }
+            curves.extend(own);
+        }
+    }
+    let mut kept = Vec::new();
+    for curve in curves {
+        kept.extend(kept_parts(curve, [a, b], tolerance)?);
+    }
+    Ok((kept, touches))
+}
+
+fn sheets(ground: &Surface) -> Vec<Sheet> {
+    patches(ground).into_iter().map(Sheet::new).collect()
+}
+
+/// Boxes that touch as one.
+fn clusters(boxes: &[Box3], point: f64) -> Vec<Box3> {
+    let mut out: Vec<Box3> = Vec::new();
+    for one in boxes {
+        let mut whole = *one;
+        loop {
+            job::look();
+            let before = out.len();
+            out.retain(|other| {
+                let near = other.touches(&whole, point);
+                whole = if near { whole.union(*other) } else { whole };
+                !near
+            });
+            if out.len() == before {
+                break;
+            }
+        }
+        out.push(whole);
+    }
+    out
+}
+
+/// Cubics in a row as a curve, a straight row as a line; `None` where nothing is left.
+fn curve(cubics: &[Nurbs], origin: Origin, tolerance: &Tolerance) -> Result<Option<Curve>> {
+    let (Some(first), Some(last)) = (cubics.first(), cubics.last()) else { return Ok(None) };
+    let (start, end) = (first.pole(0), last.pole(last.poles.len() - 1));
+    let chord = end - start;
+    let straight = |p: DVec3| {
+        let share = (p - start).dot(chord) / chord.length_squared();
+        (start + chord * share).distance(p) <= STRAIGHT * tolerance.point
+    };
+    if chord.length() > tolerance.point && cubics.iter().all(|c| (0..c.poles.len()).all(|k| straight(c.pole(k)))) {
+        return build::line(start, end, origin).map(Some);
+    }
+    let curve = Curve::new(Shape::Nurbs(Arc::new(Nurbs::joined(cubics))), Kind::Meet, origin);
+    Ok((curve.length() > tolerance.point).then_some(curve))
+}
+
+/// The parts of a curve that lie in the kept parts of two surfaces.
+fn kept_parts(curve: Curve, surfaces: [&Surface; 2], tolerance: &Tolerance) -> Result<Vec<Curve>> {
+    if surfaces.iter().all(|s| s.domain() != Domain::Loop) {
+        return Ok(vec![curve]);
+    }
+    let chain = Chain::of_curve(&curve);
+    let mut stretches = vec![(0.0, 1.0)];
+    for surface in surfaces {
+        stretches = kept_stretches(&chain, surface, stretches, tolerance)?;
+    }
+    if stretches == [(0.0, 1.0)] {
+        return Ok(vec![curve]);
+    }
+    let long_enough = stretches.into_iter().filter(|(from, to)| (to - from) * chain.length() > tolerance.point);
+    long_enough.map(|(from, to)| chain.slice(from, to, tolerance)?.to_curve()).collect()
+}
+
+/// Curves without those that lie on another one: patches side by side both have what lies on their border.
+fn once(mut curves: Vec<Curve>, tolerance: &Tolerance) -> Vec<Curve> {
+    const PLACES: usize = 5;
+    curves.sort_by(|a, b| b.length().total_cmp(&a.length()));
+    let mut kept: Vec<(Curve, Chain)> = Vec::new();
+    for curve in curves {
+        let chain = Chain::of_curve(&curve);
+        let lies = |other: &Chain| {
+            let near = |k: usize| other.closest(chain.point(k as f64 / (PLACES - 1) as f64)).2 <= 2.0 * tolerance.point;
+            curve.bbox().touches(&other.bbox(), tolerance.point) && (0..PLACES).all(near)
+        };
+        if !kept.iter().any(|(_, other)| lies(other)) {
+            kept.push((curve, chain));
+        }
+    }
+    kept.into_iter().map(|(curve, _)| curve).collect()
+}

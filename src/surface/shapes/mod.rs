@@ -1,0 +1,20 @@
+//! What a surface may be by itself, evaluated and bounded: blended curves, nets, profiles in motion, heights over a plane. Nothing here
+//! knows of the others or of [`Surface`](super::core::surface::Surface).
+
+pub mod blend;
+pub mod blend_enclosure;
+pub mod cardinal;
+pub mod cubic_triangle;
+pub mod frame;
+pub mod framed;
+pub mod height_field;
+pub mod matrices;
+pub mod net_enclosure;
+pub mod nurbs;
+pub mod powers;
+pub mod speed_map;
+pub mod sweep;
+pub mod third_derivative_bounds;
+pub mod trilateral;
+pub mod trilateral_enclosure;
+pub mod weights;

@@ -1,0 +1,80 @@
+//! Common breaks of sections, so that all have as many pieces.
+
+use crate::base::fault::{Result, ValueFault};
+use crate::base::tolerance::{NUDGE, Tolerance};
+use crate::surface::swept::deform;
+use crate::surface::swept::sections::Section;
+
+/// The common breaks of all sections: of each the fractions.
+pub struct Marks {
+    /// Fractions of all breaks, one row per section.
+    pub rows: Vec<Vec<f64>>,
+    /// Which break each guide runs through, in the order in which sections meet them.
+    pub places: Vec<usize>,
+}
+
+impl Marks {
+    /// Breaks of any section are breaks of all, at the same share of the run between two guides.
+    pub fn new(sections: &[Section], order: &[usize], closed: bool, tolerance: &Tolerance) -> Result<Self> {
+        let near = |s: &Section| tolerance.point / s.chain.length();
+        let ends = |s: &Section| {
+            let head = s.anchors[order[0]] > near(s);
+            // A section no longer than two tolerances begins on its only guide.
+            (head, s.anchors[order[order.len() - 1]] < 1.0 - near(s) || order.len() == 1 && !head)
+        };
+        let (head, tail) = ends(&sections[0]);
+        if sections.iter().any(|s| ends(s) != (head, tail)) {
+            let found = "some that end on the outer guide and some that go on beyond it".to_owned();
+            return Err(ValueFault::OutsideRange { argument: "sections", found, range: "one or the other".to_owned() }.into());
+        }
+        let edges = |s: &Section| -> Vec<f64> {
+            let mut edges: Vec<f64> = order.iter().map(|&j| s.anchors[j]).collect();
+            if head {
+                edges.insert(0, 0.0);
+            } else {
+                edges[0] = 0.0;
+            }
+            if tail {
+                edges.push(1.0);
+            } else {
+                let last = edges.len() - 1;
+                edges[last] = 1.0;
+            }
+            edges
+        };
+        let edges: Vec<Vec<f64>> = sections.iter().map(edges).collect();
+        // Breaks as (run between two edges, share of it).
+        let mut own: Vec<Vec<(usize, f64, f64)>> = Vec::with_capacity(sections.len());
+        for (section, edges) in sections.iter().zip(&edges) {
+            let share = |f: f64| {
+                let q = edges.partition_point(|e| *e <= f).clamp(1, edges.len() - 1) - 1;
+                (q, (f - edges[q]) / (edges[q + 1] - edges[q]), f)
+            };
+            own.push(deform::own_breaks(&section.chain, tolerance)?.into_iter().map(share).collect());
+        }
+        let mut all: Vec<(usize, f64)> = own.iter().flatten().map(|m| (m.0, m.1)).filter(|m| m.1 > NUDGE && m.1 < 1.0 - NUDGE).collect();
+        all.extend((0..edges[0].len() - 1).map(|q| (q, 0.0)));
+        all.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        all.dedup_by(|b, a| a.0 == b.0 && b.1 - a.1 <= NUDGE);
+        let row = |k: usize| -> Vec<f64> {
+            let one = |&(q, r): &(usize, f64)| {
+                let (from, to) = (edges[k][q], edges[k][q + 1]);
+                let kept = own[k].iter().find(|m| m.0 == q && (m.1 - r).abs() <= NUDGE && r > 0.0);
+                kept.map_or(if r == 0.0 { from } else { from + (to - from) * r }, |m| m.2)
+            };
+            all.iter().map(one).chain([1.0]).collect()
+        };
+        let rows = (0..sections.len()).map(row).collect();
+        let first = usize::from(head);
+        let place = |q: usize| all.iter().position(|m| *m == (q, 0.0)).unwrap_or(all.len());
+        let places =
+            (0..order.len()).map(|n| if n + first + 1 == edges[0].len() && !closed { all.len() } else { place(n + first) }).collect();
+        Ok(Self { rows, places })
+    }
+
+    /// The mean over the sections.
+    pub fn mean(&self) -> Vec<f64> {
+        let n = self.rows.len() as f64;
+        (0..self.rows[0].len()).map(|k| self.rows.iter().map(|row| row[k]).sum::<f64>() / n).collect()
+    }
+}

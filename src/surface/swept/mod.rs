@@ -1,0 +1,17 @@
+//! Surfaces of profiles in motion: extruded, revolved, along a path, along guides by a law.
+
+pub mod along;
+pub mod deform;
+pub mod extrude;
+pub mod frame;
+pub mod laws;
+pub mod legs;
+pub mod marks;
+pub mod revolve;
+pub mod rounded;
+pub mod sections;
+pub mod single;
+pub mod sweep;
+pub mod sweep_input;
+pub mod sweep_net;
+pub mod synchronized;

@@ -1,0 +1,249 @@
+//! `sweep`: sections carried along guides by a law.
+
+use glam::DVec3;
+
+use crate::base::fault::{CurveFault, Fault, Result, SurfaceFault, SweepFault};
+use crate::base::origin::Origin;
+use crate::base::tolerance::{NEAREST, NUDGE, Tolerance};
+use crate::geometry::build::line;
+use crate::geometry::spline::{Ends, Spline, spline};
+use crate::network::Chain;
+use crate::surface::blended::coons::{Made, finish};
+use crate::surface::blended::gordon::{CurveNet, Named, gordon};
+use crate::surface::core::surface::Surface;
+use crate::surface::data::flow_words::phrase;
+use crate::surface::data::kind::SurfaceKind;
+use crate::surface::data::one_sided::OneSided;
+use crate::surface::rails::rail::Rail;
+use crate::surface::rails::reparam::{Map, Reparam};
+use crate::surface::shapes::blend::Blend;
+use crate::surface::shapes::weights::{Axis, Rule};
+use crate::surface::swept::laws::Law;
+use crate::surface::swept::sections::Guide;
+use crate::surface::swept::single::single;
+use crate::surface::swept::sweep_input::{Input, Method};
+use crate::surface::swept::sweep_net::{SweepNet, net};
+
+/// The surface through all sections and guides; u runs along the main guide, v along the sections. With notes and warnings.
+///
+/// One section on one guide is exact. There must be at least one section and one guide. Fails with E631–E637 and E640.
+/// E401 for one that is no longer than the tolerance.
+pub fn sweep(input: &Input, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
+    if let Some(short) = input.guides.iter().chain(input.sections).find(|chain| chain.length() <= tolerance.point) {
+        return Err(CurveFault::ZeroLength { of: short.origin(), length: short.length(), tolerance: tolerance.point }.into());
+    }
+    if let ([section], [guide]) = (input.sections, input.guides)
+        && let Some(done) = single(section, guide, input, tolerance)?
+    {
+        return Ok(done);
+    }
+    let mut guides: Vec<Guide> = input.guides.iter().map(Guide::new).collect();
+    loop {
+        match net(input.sections, &guides, input.law, input.origin, tolerance)? {
+            Ok(net) => return surface(net, input, tolerance),
+            Err(short) => {
+                let guide = &guides[short.guide];
+                let fixed = short.guide == 0 || guide.own != (0.0, 1.0) || input.law == Law::Synchronized;
+                let longer = if fixed { None } else { Guide::longer(&guide.given, tolerance)? };
+                guides[short.guide] = longer.ok_or(short.fault)?;
+            }
+        }
+    }
+}
+
+pub(crate) fn surface(net: SweepNet, input: &Input, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
+    let mut notes = net.notes.clone();
+    let mut nodes_u: Vec<f64> = net.ribs.iter().map(|r| r.w).collect();
+    if net.closed.0 {
+        nodes_u.push(1.0);
+    }
+    let along_v: Vec<Rail> = net
+        .ribs
+        .iter()
+        .map(|r| Rail::new(r.chain.clone(), Map::new(net.breaks.clone(), r.breaks.clone(), Reparam::Smooth, net.closed.1)))
+        .collect();
+    // Guides by break, then lines through the sections where there is none.
+    let mut lines: Vec<(usize, Rail)> = Vec::new();
+    for (&j, &place) in net.order.iter().zip(&net.places) {
+        lines.push((place, guide_rail(&net, j, &nodes_u, &mut notes, tolerance)?));
+    }
+    let last = net.breaks.len() - 1;
+    for place in missing(&lines, &net, last) {
+        lines.push((place, through(&net, place, &nodes_u, input.origin, tolerance)?));
+    }
+    lines.sort_by_key(|l| l.0);
+    let mut nodes_v: Vec<f64> = lines.iter().map(|l| net.breaks[l.0]).collect();
+    if net.closed.1 {
+        nodes_v.push(1.0);
+    }
+    let along_u: Vec<Rail> = lines.into_iter().map(|l| l.1).collect();
+    let poles = along_u.iter().filter(|r| matches!(r, Rail::Point(_))).count();
+    let chains: Vec<Chain> = input.sections.iter().chain(input.guides).cloned().collect();
+    let flow = phrase(poles, net.closed);
+    let (made, more) = match input.method {
+        Method::Gordon => {
+            let named = Named { origin: input.origin, kind: SurfaceKind::Sweep, flow, chains };
+            gordon(CurveNet { along_u, along_v, nodes: (nodes_u, nodes_v), closed: net.closed }, named, tolerance)
+        }
+        Method::Local => local(
+            along_u,
+            along_v,
+            (nodes_u, nodes_v),
+            Made { origin: input.origin, kind: SurfaceKind::Sweep, flow, closed: net.closed, chains },
+            tolerance,
+        ),
+    };
+    notes.extend(more);
+    contains(&made, &net, tolerance)?;
+    Ok((made, notes))
+}
+
+/// Each patch from its own four curves.
+fn local(
+    mut along_u: Vec<Rail>,
+    mut along_v: Vec<Rail>,
+    nodes: (Vec<f64>, Vec<f64>),
+    made: Made,
+    tolerance: &Tolerance,
+) -> (Surface, Vec<Fault>) {
+    for (rails, closed) in [(&mut along_u, made.closed.1), (&mut along_v, made.closed.0)] {
+        if closed && let Some(first) = rails.first().cloned() {
+            rails.push(first);
+        }
+    }
+    let blend = Blend::new(Axis::new(nodes.0, Rule::Linear), Axis::new(nodes.1, Rule::Linear), along_v, along_u);
+    let mut notes = Vec::new();
+    (finish(blend, made, tolerance, &mut notes), notes)
+}
+
+/// A guide between the first and the last station; N638 for what was added to it, N609 for what is left out.
+fn guide_rail(net: &SweepNet, j: usize, nodes: &[f64], notes: &mut Vec<Fault>, tolerance: &Tolerance) -> Result<Rail> {
+    let guide = &net.guides[j];
+    let mut fractions: Vec<f64> = net.ribs.iter().map(|r| r.on_guides[j]).collect();
+    if net.closed.0 {
+        fractions.push(1.0);
+        return Ok(Rail::new(guide.chain.clone(), Map::new(nodes.to_vec(), fractions, Reparam::Smooth, true)));
+    }
+    let n = fractions.len() - 1;
+    let (from, to) = (fractions[0], fractions[n]);
+    let (whole, near) = (guide.chain.length(), tolerance.point / guide.chain.length());
+    for (own, used, outward) in [(guide.own.0, from, -1.0), (guide.own.1, to, 1.0)] {
+        let more = (used - own) * outward;
+        let (of, end) = (guide.given.origin(), guide.chain.point(if more > 0.0 { used } else { own }));
+        if more > near {
+            notes
+                .push(SweepFault::GuideExtended { guide: of, length: more * whole, share: more / (guide.own.1 - guide.own.0), end }.into());
+        } else if more < -near {
+            let border = net.guides[0].given.origin();
+            notes.push(SurfaceFault::EndTrimmed { curve: of, border, end, length: -more * whole }.into());
+        }
+    }
+    let all = from <= near && to >= 1.0 - near;
+    let chain = if all { guide.chain.clone() } else { guide.chain.slice(from, to, tolerance)? };
+    fractions.iter_mut().for_each(|f| *f = if all { *f } else { (*f - from) / (to - from) });
+    (fractions[0], fractions[n]) = (0.0, 1.0);
+    Ok(Rail::new(chain, Map::new(nodes.to_vec(), fractions, Reparam::Smooth, false)))
+}
+
+/// Breaks at which a line through the sections is wanted: open ends, and enough for a closed direction.
+fn missing(lines: &[(usize, Rail)], net: &SweepNet, last: usize) -> Vec<usize> {
+    const LEAST: usize = 3;
+    let mut have: Vec<usize> = lines.iter().map(|l| l.0).collect();
+    have.sort_unstable();
+    let before = have.len();
+    if net.closed.1 {
+        // In the middle of the widest gaps there are breaks, as a closed section has several pieces. Of equals all are taken, so that
+        // the direction of the sections says nothing.
+        while have.len() < LEAST {
+            let gap = |k: usize| (have[k], have.get(k + 1).copied().unwrap_or(last));
+            let width = |k: usize| net.breaks[gap(k).1] - net.breaks[gap(k).0];
+            let widest = (0..have.len()).map(width).fold(0.0, f64::max);
+            let mut more = Vec::new();
+            for (low, high) in (0..have.len()).filter(|k| width(*k) >= widest - NUDGE).map(gap) {
+                let middle = 0.5 * (net.breaks[low] + net.breaks[high]);
+                let off = |k: usize| (net.breaks[k] - middle).abs();
+                let least = (low + 1..high).map(off).fold(f64::INFINITY, f64::min);
+                more.extend((low + 1..high).filter(|k| off(*k) <= least + NUDGE));
+            }
+            if more.is_empty() {
+                break;
+            }
+            have.extend(more);
+            have.sort_unstable();
+        }
+    } else {
+        have.extend([0, last].into_iter().filter(|k| !lines.iter().any(|l| l.0 == *k)));
+    }
+    debug_assert!(have.len() >= before);
+    have.into_iter().filter(|k| !lines.iter().any(|l| l.0 == *k)).collect()
+}
+
+/// A line through the sections at one of their common breaks: a spline, in parts where the main guide has a corner; a pole
+/// where they all meet there.
+fn through(net: &SweepNet, place: usize, nodes: &[f64], origin: Origin, tolerance: &Tolerance) -> Result<Rail> {
+    let points: Vec<DVec3> = net.ribs.iter().map(|r| r.chain.point(r.breaks[place])).collect();
+    if points.iter().all(|p| tolerance.same_point(points[0], *p)) {
+        return Ok(Rail::Point(points[0]));
+    }
+    if net.closed.0 {
+        let curve = spline(&points, &Spline { start: Ends::Natural, end: Ends::Natural, closed: true }, origin)?;
+        let mut fractions: Vec<f64> = curve.knots().iter().map(|t| curve.length_at(*t) / curve.length()).collect();
+        let n = fractions.len() - 1;
+        (fractions[0], fractions[n]) = (0.0, 1.0);
+        return Ok(Rail::new(Chain::of_curve(&curve), Map::new(nodes.to_vec(), fractions, Reparam::Smooth, true)));
+    }
+    let kinks = net.guides[0].chain.kinks(tolerance);
+    let corner = |k: &usize| kinks.iter().any(|f| (f - net.ribs[*k].w).abs() <= tolerance.parameter);
+    let n = points.len() - 1;
+    let stops: Vec<usize> = std::iter::once(0).chain((1..n).filter(corner)).chain(std::iter::once(n)).collect();
+    let (mut parts, mut lengths) = (Vec::new(), vec![0.0]);
+    for w in stops.windows(2) {
+        let run = &points[w[0]..=w[1]];
+        let curve = match run {
+            [a, b] => line(*a, *b, origin)?,
+            _ => spline(run, &Spline { start: Ends::Natural, end: Ends::Natural, closed: false }, origin)?,
+        };
+        let before = lengths[lengths.len() - 1];
+        let knots = if run.len() == 2 { vec![curve.domain().1] } else { curve.knots()[1..].to_vec() };
+        lengths.extend(knots.iter().map(|t| before + curve.length_at(*t)));
+        parts.push(Chain::of_curve(&curve));
+    }
+    let whole = lengths[n];
+    let mut fractions: Vec<f64> = lengths.iter().map(|l| l / whole).collect();
+    (fractions[0], fractions[n]) = (0.0, 1.0);
+    let chain = match parts.as_slice() {
+        [one] => one.clone(),
+        _ => Chain::join(&parts, origin, tolerance)?,
+    };
+    Ok(Rail::new(chain, Map::new(nodes.to_vec(), fractions, Reparam::Smooth, false)))
+}
+
+/// The surface holds every section and guide, to [`NEAREST`] of its size and what they miss each other by; E413 else.
+fn contains(surface: &Surface, net: &SweepNet, tolerance: &Tolerance) -> Result<()> {
+    const PLACES: usize = 24;
+    let size = surface.hull().diagonal();
+    let allowed = NEAREST * size + tolerance.point;
+    let (us, vs) = (net.ribs.iter().map(|r| r.w), net.places.iter().map(|k| net.breaks[*k]));
+    let far = |p: DVec3, q: DVec3| p.distance(q) > allowed;
+    let fault =
+        |at: DVec3| CurveFault::NotConverged { of: surface.origin(), what: "the surface through its own sections".to_owned(), at }.into();
+    for (rib, u) in net.ribs.iter().zip(us) {
+        let map = Map::new(net.breaks.clone(), rib.breaks.clone(), Reparam::Smooth, net.closed.1);
+        for k in 0..=PLACES {
+            let v = k as f64 / PLACES as f64;
+            let p = rib.chain.point(map.value(v));
+            if far(surface.jet_one_sided(u, v, (OneSided::After, OneSided::After)).p, p) {
+                return Err(fault(p));
+            }
+        }
+    }
+    for (&j, v) in net.order.iter().zip(vs) {
+        for rib in &net.ribs {
+            let p = net.guides[j].chain.point(rib.on_guides[j]);
+            if far(surface.point(rib.w, v), p) {
+                return Err(fault(p));
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,281 @@
+//! The parts into which curves divide a surface.
+
+use std::collections::BTreeMap;
+
+use glam::{DVec2, DVec3};
+
+use crate::base::fault::{CutFault, Result};
+use crate::base::job;
+use crate::base::origin::Origin;
+use crate::base::tolerance::{NUDGE, TOLD_APART, Tolerance};
+use crate::network::Chain;
+use crate::surface::closest::foot;
+use crate::surface::closest::nearest::closest;
+use crate::surface::core::plane;
+use crate::surface::core::surface::Surface;
+use crate::surface::data::kind::Domain;
+use crate::surface::rails::side::{Border, Side};
+use crate::surface::rails::trim_curve::TrimCurve;
+use crate::surface::trims::cells::{Cells, Face};
+use crate::surface::trims::cutters::{Cutter, Meets, Piece, bounded, pieces, strands, within};
+use crate::surface::trims::faces::{Edge, bridges, followers, is_plane, loops, without_tails};
+use crate::surface::trims::pcurve::is_pole;
+use crate::surface::trims::trim::{TrimLoop, assembled, natural};
+
+/// Divides a surface by curves on it, together with its own border, and keeps the part with a point.
+///
+/// Curves may run on beyond each other and beyond the border; what hangs loose cuts nothing. E613 when a curve is not on the
+/// surface, E659 when one of them cuts nothing off, E660 when the point is not on the surface, or on a cut.
+pub fn divide(base: &Surface, cutters: &[Chain], keep: DVec3, origin: Origin, tolerance: &Tolerance) -> Result<Surface> {
+    let base = &plane::unmapped(base, tolerance)?;
+    let foot = foot_of(base, cutters, keep, tolerance)?;
+    let dividing = dividing(base, cutters, Meets::Anywhere, tolerance)?;
+    let cells = Cells::new(base, &dividing.pieces, &dividing.edges, tolerance)?;
+    undivided(base, &dividing, cells.faces()?.len(), tolerance)?;
+    let Some(face) = cells.face(foot)? else {
+        return Err(CutFault::KeepOff { surface: base.origin(), at: keep, off: 0.0, on: None, tolerance: tolerance.point }.into());
+    };
+    assembled(base, walks(&dividing.pieces, &face), origin)
+}
+
+/// All parts into which curves on a surface divide it, together with its own border; fails as [`divide`] does.
+pub fn split(whole: &Surface, cutters: &[Chain], origin: Origin, tolerance: &Tolerance) -> Result<Vec<Surface>> {
+    let base = &plane::unmapped(whole, tolerance)?;
+    let dividing = dividing(base, cutters, Meets::Anywhere, tolerance)?;
+    let cells = Cells::new(base, &dividing.pieces, &dividing.edges, tolerance)?;
+    let part = |face: &Face| Ok(assembled(base, walks(&dividing.pieces, face), origin)?.cut_from(std::slice::from_ref(whole)));
+    let faces = cells.faces()?;
+    undivided(base, &dividing, faces.len(), tolerance)?;
+    faces.iter().map(part).collect()
+}
+
+/// Fails where cuts that end nowhere leave one part of a surface on which every way round encloses something: then one of them was
+/// taken the wrong way round.
+fn undivided(base: &Surface, dividing: &Dividing, parts: usize, tolerance: &Tolerance) -> Result<()> {
+    let (closed_u, closed_v) = base.closed();
+    let pole = |k: usize| matches!(base.side(k), Side::Pole(_));
+    let simple = match base.domain() {
+        Domain::Square => match (closed_u, closed_v) {
+            (false, false) => true,
+            (true, false) => pole(0) || pole(2),
+            (false, true) => pole(1) || pole(3),
+            (true, true) => false,
+        },
+        _ => false,
+    };
+    let cut = dividing.pieces.iter().find(|piece| !piece.rim);
+    match cut.filter(|_| simple && parts < 2) {
+        Some(piece) => Err(CutFault::NothingParted { surface: base.origin(), at: piece.p.1, tolerance: tolerance.point }.into()),
+        None => Ok(()),
+    }
+}
+
+/// What divides a surface: pieces of its border and of curves, as a graph in (u, v).
+pub(crate) struct Dividing {
+    pub pieces: Vec<Piece>,
+    pub edges: Vec<Edge>,
+}
+
+/// The pieces of the border and of curves that divide a surface, loose ends left out.
+pub(crate) fn dividing(base: &Surface, cutters: &[Chain], meets: Meets, tolerance: &Tolerance) -> Result<Dividing> {
+    let strands = strands(base, cutters, meets, tolerance)?;
+    let (all, along) = pieces(base, &strands, tolerance)?;
+    let (edges, places) = graph(base, &all, tolerance);
+    let bare: Vec<bool> = all.iter().map(|piece| piece.seam || matches!(piece.border.side, Side::Pole(_))).collect();
+    let mut stays = without_tails(&edges, &sites(base, &places, tolerance), &bare);
+    // A curve from one loop to another, as from the border to a hole, parts nothing either.
+    let kept: Vec<usize> = (0..all.len()).filter(|k| stays[*k]).collect();
+    let graph: Vec<Edge> = kept.iter().map(|k| edges[*k].clone()).collect();
+    let rows = loops(&followers(&graph));
+    if is_plane(&graph, &rows) {
+        bridges(&rows).into_iter().map(|k| kept[k]).filter(|k| !all[*k].rim).for_each(|k| stays[k] = false);
+    }
+    for (k, cutter) in cutters.iter().enumerate() {
+        let parts = || (0..all.len()).filter(|i| strands[all[*i].strand].cutter == Some(k));
+        let outside = parts().next().is_none();
+        if parts().any(|i| stays[i]) || outside && along.contains(&k) {
+            continue;
+        }
+        let mut ends = if outside { Vec::new() } else { open_ends(cutter, &strands, &all, &stays, tolerance) };
+        if bounded(base) {
+            let loops = natural(base, tolerance)?;
+            ends.retain(|p| within(base, &loops, *p).is_some());
+        }
+        return Err(CutFault::CutOpen { cutter: cutter.origin(), surface: base.origin(), ends, outside }.into());
+    }
+    let kept = || (0..all.len()).filter(|i| stays[*i]);
+    Ok(Dividing { pieces: kept().map(|i| all[i].clone()).collect(), edges: kept().map(|i| edges[i].clone()).collect() })
+}
+
+/// The foot of the point to keep.
+fn foot_of(base: &Surface, cutters: &[Chain], keep: DVec3, tolerance: &Tolerance) -> Result<DVec2> {
+    let fault = |off: f64, on: Option<Origin>| CutFault::KeepOff { surface: base.origin(), at: keep, off, on, tolerance: tolerance.point };
+    let near = closest(base, keep);
+    if near.distance > tolerance.point {
+        return Err(fault(near.distance, None).into());
+    }
+    if let Some(cutter) = cutters.iter().find(|c| c.closest(keep).2 <= tolerance.point) {
+        return Err(fault(0.0, Some(cutter.origin())).into());
+    }
+    let below = closest(&base.untrimmed(), keep).uv;
+    Ok(DVec2::new(below.0, below.1))
+}
+
+/// The ends of a cutter that are on nothing that divides the surface.
+fn open_ends(cutter: &Chain, strands: &[Cutter], all: &[Piece], stays: &[bool], tolerance: &Tolerance) -> Vec<DVec3> {
+    let held = |p: DVec3| {
+        let near = |piece: &Piece| match (&strands[piece.strand].chain, piece.own_chain()) {
+            (_, Some(run)) | (Some(run), None) => run.closest(p).2 <= 2.0 * tolerance.point,
+            (None, None) => piece.p.1.distance(p) <= 2.0 * tolerance.point,
+        };
+        all.iter().zip(stays).any(|(piece, stays)| *stays && !piece.seam && near(piece))
+    };
+    let mut ends = vec![cutter.start(), cutter.end()];
+    ends.retain(|p| !held(*p));
+    ends
+}
+
+/// Places of the vertices, in (u, v) and in space.
+type Places = Vec<(DVec2, DVec3)>;
+
+/// Vertices found by place, edges with their directions.
+fn graph(base: &Surface, all: &[Piece], tolerance: &Tolerance) -> (Vec<Edge>, Places) {
+    let (ends, places) = vertices(base, all, tolerance);
+    // Curves that touch leave a vertex in one direction: at one distance from it they have parted, at one share of each perhaps not.
+    let length = |piece: &Piece| match (&piece.course, piece.own_chain()) {
+        (TrimCurve::Pcurve(pcurve), Some(chain)) => chain.length() * (pcurve.fraction(1.0) - pcurve.fraction(0.0)).abs(),
+        _ => f64::INFINITY,
+    };
+    let mut fans: BTreeMap<usize, Vec<(usize, bool)>> = BTreeMap::new();
+    for (k, ends) in ends.iter().enumerate() {
+        fans.entry(ends.0).or_default().push((k, false));
+        fans.entry(ends.1).or_default().push((k, true));
+    }
+    let away: BTreeMap<usize, f64> = fans.iter().map(|(vertex, fan)| (*vertex, apart_at(all, fan, &length, tolerance))).collect();
+    let out = |piece: &Piece, ends: &(usize, usize)| {
+        let place = |f: f64| match (&piece.course, piece.own_chain()) {
+            (TrimCurve::Pcurve(pcurve), Some(chain)) => {
+                let f = pcurve.fraction(f);
+                foot::foot((base, None), chain.point(f), pcurve.guess(f)).0
+            }
+            (course, _) => {
+                let places = course.places();
+                places[0].lerp(places[places.len() - 1], f)
+            }
+        };
+        let share = |vertex: usize| away[&vertex] / length(piece);
+        let (first, last) = match length(piece).is_finite() {
+            true => (share(ends.0), share(ends.1)),
+            false => (START, START),
+        };
+        // From the place of the vertex: where pieces leave a run that they share, only what they are off it tells them apart.
+        (place(first) - places[ends.0].0, place(1.0 - last) - places[ends.1].0)
+    };
+    let edges = all.iter().zip(ends).map(|(piece, ends)| Edge { ends, out: out(piece, &ends) }).collect();
+    (edges, places)
+}
+
+/// How far from a vertex the pieces that leave it are apart, in space, so that their directions tell their order: pieces that touch or
+/// cross flatly may run within the tolerance of each other for long.
+fn apart_at(all: &[Piece], fan: &[(usize, bool)], length: &impl Fn(&Piece) -> f64, tolerance: &Tolerance) -> f64 {
+    let shortest = fan.iter().map(|(k, _)| length(&all[*k])).fold(f64::INFINITY, f64::min);
+    let first = (START * shortest).max((CLEAR * tolerance.point).min(CLEAR_SHARE * shortest));
+    let place = |(k, last): &(usize, bool), away: f64| {
+        let (piece, share) = (&all[*k], away / length(&all[*k]));
+        match (&piece.course, piece.own_chain()) {
+            (TrimCurve::Pcurve(pcurve), Some(chain)) => Some(chain.point(pcurve.fraction(if *last { 1.0 - share } else { share }))),
+            _ => None,
+        }
+    };
+    let apart = |away: f64| {
+        let places: Vec<DVec3> = fan.iter().filter_map(|end| place(end, away)).collect();
+        (1..places.len()).all(|k| places[..k].iter().all(|p| p.distance(places[k]) > APART * tolerance.point))
+    };
+    if !(first > 0.0 && first.is_finite()) {
+        return first;
+    }
+    let mut farther = std::iter::successors(Some(first), |away| Some(1.5 * away)).take_while(|away| *away <= FARTHEST * shortest);
+    farther.find(|away| apart(*away)).unwrap_or(first)
+}
+
+/// The vertices at the ends of pieces, and their places: ends that are near to each other are one vertex, the nearest ones first,
+/// but never the two ends of a piece that are apart.
+fn vertices(base: &Surface, all: &[Piece], tolerance: &Tolerance) -> (Vec<(usize, usize)>, Places) {
+    let ends: Places = all.iter().flat_map(|piece| [(piece.uv.0, piece.p.0), (piece.uv.1, piece.p.2)]).collect();
+    let apart: Vec<bool> = all.iter().map(|piece| piece.p.0.distance(piece.p.2) > APART * tolerance.point).collect();
+    let near: Vec<f64> = ends.iter().map(|(uv, _)| if is_pole(base, *uv) { NEAR.0 } else { NEAR.1 }).collect();
+    let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
+    for (b, (uv, p)) in job::looking(ends.iter().enumerate()) {
+        for (a, (st, q)) in ends[..b].iter().enumerate() {
+            let off = p.distance(*q);
+            if off <= TOLD_APART * tolerance.point && (*uv - *st).abs().max_element() <= near[b] {
+                pairs.push((off, a, b));
+            }
+        }
+    }
+    pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+    let mut group: Vec<usize> = (0..ends.len()).collect();
+    let mut members: Vec<Vec<usize>> = (0..ends.len()).map(|k| vec![k]).collect();
+    for (_, a, b) in pairs {
+        let (a, b) = (group[a].min(group[b]), group[a].max(group[b]));
+        // Ends 2 k and 2 k + 1 are those of piece k.
+        if a == b || members[b].iter().any(|end| apart[end / 2] && group[end ^ 1] == a) {
+            continue;
+        }
+        let moved = std::mem::take(&mut members[b]);
+        moved.iter().for_each(|end| group[*end] = a);
+        members[a].extend(moved);
+    }
+    let firsts: Vec<usize> = (0..ends.len()).filter(|k| group[*k] == *k).collect();
+    let vertex = |end: usize| firsts.partition_point(|first| *first < group[end]);
+    let of_pieces = (0..all.len()).map(|k| (vertex(2 * k), vertex(2 * k + 1))).collect();
+    (of_pieces, firsts.iter().map(|k| ends[*k]).collect())
+}
+
+/// Ends of one piece farther from each other than so many tolerances are two vertices.
+const APART: f64 = 2.0;
+
+/// Which vertices are one point of the surface, across its seams and at its poles: the first of them for each.
+fn sites(base: &Surface, places: &Places, tolerance: &Tolerance) -> Vec<usize> {
+    let (closed_u, closed_v) = base.closed();
+    let off = |x: f64, closed: bool| if closed { (x - x.round()).abs() } else { x.abs() };
+    let poles: Vec<bool> = places.iter().map(|(uv, _)| is_pole(base, *uv)).collect();
+    let one = |a: usize, b: usize| {
+        let ((uv, p), (st, q)) = (places[a], places[b]);
+        let turned = off(uv.x - st.x, closed_u).max(off(uv.y - st.y, closed_v)) <= NEAR.1;
+        p.distance(q) <= TOLD_APART * tolerance.point && (turned || poles[a] && poles[b])
+    };
+    (0..places.len()).map(|k| (0..k).find(|j| one(*j, k)).unwrap_or(k)).collect()
+}
+
+/// Share of the shortest piece at a vertex at which directions out of it are taken.
+const START: f64 = 0.01;
+/// Directions are taken so many tolerances away from a vertex, or at this share of the shortest piece where that is less.
+const CLEAR: f64 = 8.0;
+const CLEAR_SHARE: f64 = 0.25;
+/// Directions of pieces that are not apart there are taken no farther away than at this share of the shortest piece.
+const FARTHEST: f64 = 0.45;
+/// Places nearer in (u, v) than this may be one vertex: at a pole, elsewhere.
+const NEAR: (f64, f64) = (NUDGE, 0.1);
+
+/// The loops of a face as walks, the outer one first.
+pub(crate) fn walks(pieces: &[Piece], face: &Face) -> Vec<TrimLoop> {
+    let mut walks: Vec<TrimLoop> = face.iter().map(|row| walk(pieces, row)).collect();
+    walks.sort_by(|a, b| b.area2().abs().total_cmp(&a.area2().abs()));
+    walks
+}
+
+fn walk(pieces: &[Piece], row: &[((usize, bool), DVec2)]) -> TrimLoop {
+    let mut walk = TrimLoop { borders: Vec::new(), courses: Vec::new(), chains: Vec::new() };
+    for ((k, backwards), by) in row {
+        let piece = &pieces[*k];
+        let (border, course): (Border, TrimCurve) =
+            if *backwards { (piece.border.turned(), piece.course.turned()) } else { (piece.border.clone(), piece.course.clone()) };
+        if let Side::Chain { chain, .. } = &border.side {
+            walk.chains.push(chain.clone());
+        }
+        walk.borders.push(border);
+        walk.courses.push(course.shifted(*by));
+    }
+    walk
+}

@@ -1,0 +1,124 @@
+//! Loops on closed surfaces that no polygon in (u, v) tells: over the seam of a whole surface, round a pole, round a tube. They
+//! divide the surface, and what they bound alone is the part without its border.
+
+use glam::{DVec2, DVec3};
+
+use crate::base::fault::Result;
+use crate::base::origin::Origin;
+use crate::base::tolerance::{NUDGE, Tolerance};
+use crate::network::Chain;
+use crate::surface::closest::inside::inside;
+use crate::surface::closest::nearest::closest;
+use crate::surface::core::surface::Surface;
+use crate::surface::rails::side::Side;
+use crate::surface::rails::trim_curve::TrimCurve;
+use crate::surface::trims::divide::divide;
+use crate::surface::trims::trim::{TrimLoop, natural};
+
+/// Which part a loop keeps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Keep {
+    /// What it bounds alone.
+    Inside,
+    /// The rest.
+    Outside,
+}
+
+/// Where along a curve its two sides are looked at: no place that is special for anything.
+const MIDDLE: f64 = 0.4873;
+/// How far beside it, as a share of its length, at first.
+const BESIDE: f64 = 0.01;
+/// Halvings of that.
+const TRIES: usize = 12;
+/// How far beside its border a surface surely is, in nudges of (u, v).
+const INWARD: f64 = 100.0;
+/// Cells along u and v by which areas are compared.
+const CELLS: usize = 48;
+
+impl TrimLoop {
+    /// Whether it comes back to its first place by a whole turn round the surface.
+    pub fn winds(&self, base: &Surface) -> bool {
+        let ends = |c: &TrimCurve| -> Option<(DVec2, DVec2)> { Some((*c.places().first()?, *c.places().last()?)) };
+        let (Some(first), Some(last)) = (self.courses.first().and_then(ends), self.courses.last().and_then(ends)) else { return false };
+        let turns = (last.1 - first.0).round();
+        let closed = base.closed();
+        closed.0 && turns.x != 0.0 || closed.1 && turns.y != 0.0
+    }
+
+    /// Whether every place of it is inside another one, each moved by turns of its own; a place on a seam is.
+    pub fn lies_within(&self, base: &Surface, bounds: &TrimLoop) -> bool {
+        let hairs = [DVec2::ZERO, DVec2::splat(NUDGE), DVec2::splat(-NUDGE), DVec2::new(NUDGE, -NUDGE), DVec2::new(-NUDGE, NUDGE)];
+        let outline = bounds.polygon();
+        let place = |p: DVec2| bounds.copies(base, p).into_iter().any(|at| hairs.iter().any(|hair| inside(&outline, at + *hair)));
+        self.courses.iter().flat_map(TrimCurve::places).all(place)
+    }
+}
+
+/// The part of a surface that a loop bounds alone, or the rest; `None` where there is border on both sides of it.
+///
+/// On a surface without any border the smaller part is what a loop bounds.
+pub(crate) fn lone(base: &Surface, chains: &[Chain], keep: Keep, origin: Origin, tolerance: &Tolerance) -> Result<Option<Surface>> {
+    let Some(points) = beside(base, chains, tolerance) else { return Ok(None) };
+    let [a, b] = points.map(|p| divide(base, chains, p, origin, tolerance));
+    let (a, b) = (a?, b?);
+    let border = border_places(base, tolerance)?;
+    let all = |part: &Surface| border.iter().all(|p| part.holds(p.x, p.y));
+    let first_is_outside = match (all(&a), all(&b)) {
+        (true, false) => true,
+        (false, true) => false,
+        (true, true) => area(&a) >= area(&b),
+        (false, false) => return Ok(None),
+    };
+    Ok(Some(if first_is_outside == (keep == Keep::Outside) { a } else { b }))
+}
+
+/// A point of the surface on each side of a loop.
+fn beside(base: &Surface, chains: &[Chain], tolerance: &Tolerance) -> Option<[DVec3; 2]> {
+    let chain = chains.first()?;
+    let jet = chain.jet(MIDDLE);
+    let at = closest(base, jet.p).uv;
+    let aside = base.normal(at.0, at.1).cross(jet.d1).try_normalize()?;
+    let mut step = BESIDE * chain.length();
+    for _ in 0..TRIES {
+        let points = [aside * step, aside * -step].map(|d| closest(base, jet.p + d).point);
+        let far = |p: &DVec3| chains.iter().map(|c| c.closest(*p).2).fold(f64::INFINITY, f64::min) >= 0.5 * step;
+        if points.iter().all(far) {
+            return Some(points);
+        }
+        step *= 0.5;
+        if step <= 4.0 * tolerance.point {
+            break;
+        }
+    }
+    None
+}
+
+/// Places just inside the border of a surface, one for each side of it that is neither a seam nor a pole.
+fn border_places(base: &Surface, tolerance: &Tolerance) -> Result<Vec<DVec2>> {
+    let mut found = Vec::new();
+    for walk in natural(base, tolerance)? {
+        for (border, course) in walk.borders.iter().zip(&walk.courses) {
+            if matches!(border.side, Side::Pole(_)) || course.is_seam(base.closed()) {
+                continue;
+            }
+            let places = course.places();
+            // A place of a curve itself: its chords may lie outside.
+            let k = places.len() / 2;
+            let (a, b) = (places[k - 1], places[(k + 1).min(places.len() - 1)]);
+            let on = if places.len() > 2 { places[k] } else { 0.5 * (a + b) };
+            found.push(on + (b - a).normalize_or_zero().perp() * INWARD * NUDGE);
+        }
+    }
+    Ok(found)
+}
+
+/// About the area of a part of a surface, by the middles of cells that it holds.
+fn area(part: &Surface) -> f64 {
+    let at = |k: usize| (k as f64 + 0.5) / CELLS as f64;
+    let cells = (0..CELLS * CELLS).map(|k| (at(k % CELLS), at(k / CELLS)));
+    let own = cells.filter(|(u, v)| part.holds(*u, *v)).map(|(u, v)| {
+        let jet = part.jet(u, v);
+        jet.du.cross(jet.dv).length()
+    });
+    own.sum()
+}
