@@ -7,7 +7,9 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use glam::DVec3;
 use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
-use lofting::geometry::{Curve, Ends, Hit, Spline, build, intersect};
+use lofting::geometry::construct::build;
+use lofting::geometry::intersect;
+use lofting::geometry::{Curve, Ends, Hit, Spline};
 
 #[allow(dead_code, reason = "the benchmark of networks uses the rest")]
 #[path = "shared/nets.rs"]

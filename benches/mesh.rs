@@ -7,7 +7,7 @@ use lofting::base::job::Job;
 use lofting::base::origin::Origin;
 use lofting::base::par;
 use lofting::base::tolerance::Tolerance;
-use lofting::geometry::build::{arc_through, spline};
+use lofting::geometry::construct::build::{arc_through, spline};
 use lofting::geometry::{Curve, Ends, Spline};
 use lofting::mesh::pipeline::build::build;
 use lofting::mesh::request::settings::RuleSettings;

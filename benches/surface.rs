@@ -7,7 +7,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use glam::DVec3;
 use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
-use lofting::geometry::build::{arc_through, spline};
+use lofting::geometry::construct::build::{arc_through, spline};
 use lofting::geometry::{Ends, Spline};
 use lofting::model::measure;
 use lofting::network::{Chain, ChainFlow, of_chains};

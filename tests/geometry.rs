@@ -4,8 +4,9 @@ use std::path::Path;
 
 use glam::DVec3;
 use lofting::base::origin::Origin;
-use lofting::geometry::fit::Fit;
-use lofting::geometry::{Curve, Ends, Kind, Spline, build};
+use lofting::geometry::construct::build;
+use lofting::geometry::construct::fit::Fit;
+use lofting::geometry::{Curve, Ends, Kind, Spline};
 use serde_json::Value;
 
 fn data(path: &str) -> Value {
@@ -114,7 +115,7 @@ fn spline_with_given_tangents() {
     }
     close(curve.length(), number(&fit["arc_length"]), 1e-12, "length");
     let how = Fit { start: Some(tangents[0]), end: Some(tangents[1]), ..Fit::default() };
-    let met = lofting::geometry::fit::fit(&points(&fit["data"]), &how, Origin::NONE).unwrap();
+    let met = lofting::geometry::construct::fit::fit(&points(&fit["data"]), &how, Origin::NONE).unwrap();
     let nurbs = met.to_nurbs(&lofting::base::tolerance::Tolerance::new(1e-6, 10.0)).unwrap();
     for (i, expected) in poles.iter().enumerate() {
         assert!(nurbs.pole(i).distance(*expected) < 1e-12, "pole {i} of a fit");
@@ -370,7 +371,7 @@ mod facts {
     /// The periodic C2 cubic with spans √|ΔP|; ours has |ΔP| and bulges further, past the corner of the second curve.
     fn centripetal(points: &[DVec3]) -> Curve {
         let spans: Vec<f64> = points.windows(2).map(|p| p[0].distance(p[1]).sqrt()).collect();
-        let slopes = lofting::geometry::spline::periodic_slopes(points, &spans);
+        let slopes = lofting::geometry::construct::spline::periodic_slopes(points, &spans);
         let pieces: Vec<Curve> = (0..spans.len())
             .map(|i| {
                 let (from, to, h) = (points[i], points[i + 1], spans[i] / 3.0);
@@ -718,15 +719,15 @@ fn fits_are_near_their_points_with_few_spans() {
         let backwards: Vec<DVec3> = points.iter().rev().copied().collect();
         for tolerance in [0.1, 0.01] {
             let how = Fit { tolerance: Some(tolerance), ..Fit::default() };
-            let curve = lofting::geometry::fit::fit(&points, &how, Origin::NONE).unwrap();
+            let curve = lofting::geometry::construct::fit::fit(&points, &how, Origin::NONE).unwrap();
             assert!(far(&curve, &points) <= tolerance * (1.0 + 1e-9), "{bends} {tolerance}: {}", far(&curve, &points));
             assert!(curve.start().distance(points[0]) < 1e-12 && curve.end().distance(points[120]) < 1e-12);
             assert!(spans(&curve) <= most, "{bends} bends, {tolerance}: {} spans", spans(&curve));
-            let other = lofting::geometry::fit::fit(&backwards, &how, Origin::NONE).unwrap();
+            let other = lofting::geometry::construct::fit::fit(&backwards, &how, Origin::NONE).unwrap();
             assert!(far(&other, &points) <= tolerance * (1.0 + 1e-9) && spans(&other) <= most, "{bends} {tolerance}: {}", spans(&other));
             let larger: Vec<DVec3> = points.iter().map(|p| *p * 1024.0).collect();
             let how = Fit { tolerance: Some(tolerance * 1024.0), ..Fit::default() };
-            let large = lofting::geometry::fit::fit(&larger, &how, Origin::NONE).unwrap();
+            let large = lofting::geometry::construct::fit::fit(&larger, &how, Origin::NONE).unwrap();
             assert_eq!(spans(&large), spans(&curve));
         }
     }
@@ -737,8 +738,8 @@ mod roundings {
     use super::*;
     use lofting::base::fault::{CurveFault, Fault};
     use lofting::geometry::closest;
-    use lofting::geometry::curve::Shape;
-    use lofting::geometry::fillet::{Treatment, treat};
+    use lofting::geometry::construct::fillet::{Treatment, treat};
+    use lofting::geometry::curves::curve::Shape;
 
     /// Numbers from 0 to 1, always the same.
     struct Numbers(u64);

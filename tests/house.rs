@@ -62,6 +62,7 @@ const ROOMS: &[(&str, &[&str])] = &[
         ],
     ),
     ("io", &["files", "tables", "mesh_files", "curve_files", "formats", "cad", "iges", "step"]),
+    ("geometry", &["data", "shapes", "curves", "query", "construct"]),
     ("lang", &["diag", "words", "syntax", "values", "eval", "incremental", "declare", "assist", "run", "fmt"]),
 ];
 
@@ -357,6 +358,27 @@ fn goldens_hold_no_failed_checks() {
 }
 
 /// Where the papers and books stand that are cited by a key in square brackets.
+/// What notes and guides call a file by is the end of the path of one.
+#[test]
+fn documents_name_files_that_exist() {
+    let (mut files, mut pages) = (Vec::new(), Vec::new());
+    ["src", "tests", "benches", "examples"].iter().for_each(|dir| collect(Path::new(dir), &mut files));
+    all_text(Path::new("docs"), &mut pages);
+    let paths: Vec<String> = files.iter().map(|file| format!("/{}", file.to_string_lossy().replace('\\', "/"))).collect();
+    let mut found = Vec::new();
+    for page in pages.iter().filter(|page| page.extension().is_some_and(|e| e == "md")) {
+        let text = fs::read_to_string(page).expect("a page can be read");
+        for (number, line) in text.lines().enumerate() {
+            for name in line.split('`').skip(1).step_by(2).filter(|name| name.ends_with(".rs") && !name.contains(['<', ' ', '*'])) {
+                if !paths.iter().any(|path| path.ends_with(&format!("/{name}"))) {
+                    found.push(format!("{}:{}: {name}", page.display(), number + 1));
+                }
+            }
+        }
+    }
+    report("documents name files that exist", found);
+}
+
 const SOURCES: &str = "docs/notes/sources.md";
 
 /// A key of citation (names and a year) with a line for it, and a line for nothing that is not cited.

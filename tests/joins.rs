@@ -4,7 +4,7 @@ use glam::DVec3;
 use lofting::base::math;
 use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
-use lofting::geometry::build::line;
+use lofting::geometry::construct::build::line;
 use lofting::network::Chain;
 use lofting::surface::points::control_net::{Net, nurbs};
 use lofting::surface::swept::revolve::{Axis, revolve};

@@ -7,7 +7,7 @@ use lofting::base::fault::{Fault, Plain};
 use lofting::base::job::Job;
 use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
-use lofting::geometry::build::{arc_through, circle, line, polyline, spline};
+use lofting::geometry::construct::build::{arc_through, circle, line, polyline, spline};
 use lofting::geometry::{Curve, Ends, Spline};
 use lofting::mesh::pipeline::build::build;
 use lofting::mesh::request::settings::RuleSettings;

@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 use lofting::base::job::Job;
 use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
-use lofting::geometry::build::line;
+use lofting::geometry::construct::build::line;
 use lofting::mesh::Mesh;
 use lofting::mesh::chart::parametric_surface::{ParametricSurface, Spot, UniformSize};
 use lofting::mesh::data::face_geometry::FaceNodes;

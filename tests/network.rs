@@ -5,7 +5,8 @@ use lofting::base::fault::Fault;
 use lofting::base::job::Job;
 use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
-use lofting::geometry::{Curve, Kind, Motion, build};
+use lofting::geometry::construct::build;
+use lofting::geometry::{Curve, Kind, Motion};
 use lofting::network::detect::detect;
 use lofting::network::{Chain, ChainFlow, Flow, FlowFault, FlowOptions, Input, Network, NodeList, Run, meet, meet_once, of_chains};
 

@@ -9,7 +9,7 @@ use lofting::base::job::Job;
 use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
 use lofting::geometry::Curve;
-use lofting::geometry::build::line;
+use lofting::geometry::construct::build::line;
 use lofting::mesh::cache::reuse::Reuse;
 use lofting::mesh::pipeline::build::build;
 use lofting::mesh::request::plan::{Place, Refine};
@@ -201,8 +201,10 @@ fn holds_lines(mesh: &Mesh) {
 fn lines_and_points_inside_are_built_in() {
     // A rib that starts on the border, a ring across it, one that runs over the shared edge up the wall, one that only touches.
     let rib = line(p(0.0, 2.0, 0.0), p(7.0, 4.0, 0.0), Origin::NONE).unwrap();
-    let ring = lofting::geometry::build::circle_start(p(5.0, 3.0, 0.0), p(6.0, 3.0, 0.0), DVec3::Z, Origin::NONE).unwrap();
-    let over = lofting::geometry::build::polyline(&[p(8.0, 1.0, 0.0), p(10.0, 2.0, 0.0), p(10.0, 3.0, 3.0)], false, Origin::NONE).unwrap();
+    let ring = lofting::geometry::construct::build::circle_start(p(5.0, 3.0, 0.0), p(6.0, 3.0, 0.0), DVec3::Z, Origin::NONE).unwrap();
+    let over =
+        lofting::geometry::construct::build::polyline(&[p(8.0, 1.0, 0.0), p(10.0, 2.0, 0.0), p(10.0, 3.0, 3.0)], false, Origin::NONE)
+            .unwrap();
     let stem = line(p(3.0, 6.0, 0.0), p(3.0, 4.5, 0.0), Origin::NONE).unwrap();
     let scene = scene_with(2, vec![rib, ring, over, stem]);
     for order in [1, 2] {

@@ -9,7 +9,7 @@ use lofting::base::fault::{CutFault, Fault, Result as Made};
 use lofting::base::math::sin_cos;
 use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
-use lofting::geometry::build::{arc_through, circle, line, polyline, spline};
+use lofting::geometry::construct::build::{arc_through, circle, line, polyline, spline};
 use lofting::geometry::{Curve, Ends, Spline};
 use lofting::model::measure;
 use lofting::network::Chain;

@@ -4,7 +4,7 @@ use glam::DVec3;
 use lofting::base::fault::Fault;
 use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
-use lofting::geometry::build::{arc_center, arc_through, circle, line, polyline, spline};
+use lofting::geometry::construct::build::{arc_center, arc_through, circle, line, polyline, spline};
 use lofting::geometry::{Curve, Ends, Motion, Spline};
 use lofting::model::measure;
 use lofting::network::flow::Member;

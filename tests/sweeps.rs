@@ -6,8 +6,8 @@ use glam::DVec3;
 use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
 use lofting::geometry::Motion;
-use lofting::geometry::build::{arc_center, line};
-use lofting::geometry::spline::{Ends, Spline, spline};
+use lofting::geometry::construct::build::{arc_center, line};
+use lofting::geometry::construct::spline::{Ends, Spline, spline};
 use lofting::network::Chain;
 use lofting::surface::swept::along::{Settings as AlongSettings, along};
 use lofting::surface::swept::laws::Law;
@@ -153,7 +153,7 @@ fn two_guides_and_two_sections_of_several_runs_make_four_by_four_patches() {
     // Sections of three and two runs, guides of three and two: no inner breaks fall together.
     let chain = |points: &[(f64, f64, f64)]| {
         let points: Vec<DVec3> = points.iter().map(|p| DVec3::from(*p)).collect();
-        Chain::of_curve(&lofting::geometry::build::polyline(&points, false, Origin::NONE).expect("a polyline"))
+        Chain::of_curve(&lofting::geometry::construct::build::polyline(&points, false, Origin::NONE).expect("a polyline"))
     };
     let a = chain(&[(0.0, 0.0, 0.0), (0.0, 30.0, 20.0), (0.0, 70.0, 20.0), (0.0, 100.0, 0.0)]);
     let b = chain(&[(200.0, 0.0, 0.0), (200.0, 50.0, 40.0), (200.0, 100.0, 0.0)]);

@@ -11,7 +11,7 @@ use lofting::base::math::{cos, sin, sin_cos};
 use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
 use lofting::base::triangulate_points::NO_TRIANGLE;
-use lofting::geometry::build::{arc_through, circle, line};
+use lofting::geometry::construct::build::{arc_through, circle, line};
 use lofting::mesh::chart::outline::Outline;
 use lofting::mesh::chart::parametric_surface::{ParametricSurface, SizeField, Spot, UniformSize};
 use lofting::mesh::tri::build::{Lattice, Task, triangulate};

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use glam::DVec3;
 use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
-use lofting::geometry::build;
+use lofting::geometry::construct::build;
 use lofting::model::measure;
 use lofting::network::Chain;
 use lofting::surface::offset::thicken::thicken;

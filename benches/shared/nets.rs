@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 use lofting::base::origin::Origin;
-use lofting::geometry::{Curve, build};
+use lofting::geometry::Curve;
+use lofting::geometry::construct::build;
 use lofting::network::Input;
 
 /// A generator of numbers in 0…1.

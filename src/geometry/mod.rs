@@ -1,38 +1,21 @@
 //! Floor 1: curves. Knows nothing of networks, surfaces or text.
 //!
-//! A [`Curve`] is one of a closed set of shapes, each evaluated exactly, plus the word the user made it with.
+//! A [`Curve`] is one of a closed set of shapes, each evaluated exactly, plus the word the user made it with. A room imports only from rooms before it:
+//!
+//! [`data`] · [`shapes`] · [`curves`] · [`query`] · [`construct`]
 
-pub mod arc;
-mod arclength;
-pub(crate) mod bounds;
-pub mod build;
-pub mod closest;
-pub mod composite;
-mod convert;
-pub mod curve;
-mod enclosure;
-pub mod fewest;
-pub mod fillet;
-pub mod fit;
-pub mod helix;
-pub mod intersect;
-mod kinks;
-pub mod least_squares;
-pub mod motion;
-pub mod nurbs;
-pub mod nurbs_edit;
-pub mod offset;
-mod offset_build;
-pub(crate) mod pieces;
-pub mod polynomial;
-mod rebuilt;
-pub mod spline;
+pub mod construct;
+pub mod curves;
+pub mod data;
+pub mod query;
+pub mod shapes;
 
-pub use build::{Ends, Spline};
-pub use closest::{Closest, closest, closest_pair};
-pub use curve::{Curve, Jet, Kind};
-pub use enclosure::{Enclosure, enclosure};
-pub use intersect::{Hit, intersect, self_intersect};
-pub use motion::Motion;
-pub use nurbs::Nurbs;
-pub(crate) use offset_build::height_over;
+pub use crate::geometry::construct::build::{Ends, Spline};
+pub(crate) use crate::geometry::construct::offset_build::height_over;
+pub use crate::geometry::curves::curve::{Curve, Kind};
+pub use crate::geometry::curves::enclosure::{Enclosure, enclosure};
+pub use crate::geometry::data::jet::Jet;
+pub use crate::geometry::data::motion::Motion;
+pub use crate::geometry::query::closest::{Closest, closest, closest_pair};
+pub use crate::geometry::query::intersect::{Hit, intersect, self_intersect};
+pub use crate::geometry::shapes::nurbs::Nurbs;

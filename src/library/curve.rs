@@ -10,7 +10,9 @@ use crate::base::fault::Fault;
 use crate::base::math;
 use crate::base::origin::Origin;
 use crate::base::tolerance::{PARALLEL, Tolerance};
-use crate::geometry::{self, Ends, Motion, Spline, build};
+use crate::geometry;
+use crate::geometry::construct::build;
+use crate::geometry::{Ends, Motion, Spline};
 use crate::lang::values::units::radians;
 use crate::network::Chain;
 

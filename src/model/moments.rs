@@ -262,7 +262,7 @@ fn stretches(run: &Run) -> impl Iterator<Item = (f64, f64)> {
 mod tests {
     use super::*;
     use crate::base::origin::Origin;
-    use crate::geometry::build;
+    use crate::geometry::construct::build;
 
     fn near(a: f64, b: f64) -> bool {
         (a - b).abs() < 1e-9

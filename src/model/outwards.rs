@@ -11,7 +11,7 @@ use crate::base::fault::{CurveFault, CutFault, Fault, Result, SurfaceFault, Touc
 use crate::base::job;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
-use crate::geometry::build::line;
+use crate::geometry::construct::build::line;
 use crate::network::Chain;
 use crate::surface::Surface;
 use crate::surface::intersect::with_curve::with_curve;

@@ -15,8 +15,9 @@ use crate::base::digest::{StableHash, StableHasher};
 use crate::base::fault::{NetworkFault, Result};
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
-use crate::geometry::curve::Shape;
-use crate::geometry::{Curve, Jet, Motion, build};
+use crate::geometry::construct::build;
+use crate::geometry::curves::curve::Shape;
+use crate::geometry::{Curve, Jet, Motion};
 
 /// A run along one curve between two arc lengths; backwards when `s1 < s0`.
 ///

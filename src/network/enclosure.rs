@@ -5,7 +5,8 @@ use glam::DVec3;
 use super::chain::Chain;
 use crate::base::range::Interval3;
 use crate::base::tolerance::SLIVER;
-use crate::geometry::{Enclosure, enclosure};
+use crate::geometry::Enclosure;
+use crate::geometry::enclosure;
 
 /// Derivatives of a chain with respect to its fraction over a stretch.
 #[derive(Clone, Copy, Debug)]

@@ -13,8 +13,9 @@ use crate::base::fault::Result;
 use crate::base::job::Job;
 use crate::base::par;
 use crate::base::tolerance::Tolerance;
-use crate::geometry::curve::Shape;
-use crate::geometry::{Curve, Hit, intersect, self_intersect};
+use crate::geometry::curves::curve::Shape;
+use crate::geometry::intersect;
+use crate::geometry::{Curve, Hit, self_intersect};
 
 /// One contact of two curves, or of a curve with itself.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -7,7 +7,8 @@ use super::snap::may_snap;
 use crate::base::fault::{NetworkFault, Result};
 use crate::base::job;
 use crate::base::tolerance::Tolerance;
-use crate::geometry::{Hit, closest_pair, intersect};
+use crate::geometry::intersect;
+use crate::geometry::{Hit, closest_pair};
 
 /// One meeting of two chains: a node of the two, or the ends of a shared run.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -61,7 +61,7 @@ impl Carry {
 mod tests {
     use super::*;
     use crate::base::origin::Origin;
-    use crate::geometry::build;
+    use crate::geometry::construct::build;
 
     /// Flat rings on an arc in the plane x = 0, the second one turned by 150° about its normal.
     #[test]

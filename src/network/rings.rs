@@ -43,7 +43,7 @@ mod tests {
 
     use super::*;
     use crate::base::origin::Origin;
-    use crate::geometry::build;
+    use crate::geometry::construct::build;
 
     type Place = (f64, f64);
 

@@ -7,7 +7,8 @@ use super::snap::may_snap;
 use crate::base::fault::{CurveEnd, NetworkFault, Result};
 use crate::base::origin::Origin;
 use crate::base::tolerance::{SLIVER, Tolerance};
-use crate::geometry::{Curve, closest as closest_on_curve};
+use crate::geometry::Curve;
+use crate::geometry::query::closest::closest as closest_on_curve;
 
 /// [`Chain::slice`].
 pub fn slice(chain: &Chain, (f0, f1): (f64, f64), tolerance: &Tolerance) -> Result<Chain> {
@@ -213,7 +214,7 @@ pub fn closest(chain: &Chain, p: DVec3) -> (f64, DVec3, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::build;
+    use crate::geometry::construct::build;
 
     fn line(a: (f64, f64), b: (f64, f64)) -> Chain {
         let point = |(x, y): (f64, f64)| DVec3::new(x, y, 0.0);

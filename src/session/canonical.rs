@@ -71,7 +71,7 @@ fn on_grid(p: DVec3, tolerance: &Tolerance) -> DVec3 {
 mod tests {
     use super::*;
     use crate::base::origin::Origin;
-    use crate::geometry::build;
+    use crate::geometry::construct::build;
 
     #[test]
     fn curves_are_in_order_of_place_then_of_name() {

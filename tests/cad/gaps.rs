@@ -4,7 +4,7 @@ use glam::DVec3;
 use lofting::base::fault::{Fault, MeshFault};
 use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
-use lofting::geometry::build::{arc_through, circle, line};
+use lofting::geometry::construct::build::{arc_through, circle, line};
 use lofting::mesh::Mesh;
 use lofting::network::Chain;
 use lofting::surface::Surface;

@@ -6,7 +6,7 @@ use glam::DVec3;
 use lofting::base::bbox::Box3;
 use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
-use lofting::geometry::build::nurbs;
+use lofting::geometry::construct::build::nurbs;
 use lofting::network::{Chain, net};
 use lofting::surface::blended::coons::{Grid, Method, Settings, build};
 use lofting::surface::{Reparam, Surface};

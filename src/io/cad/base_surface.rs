@@ -5,8 +5,9 @@ use glam::{DAffine3, DVec3};
 use crate::base::bbox::Box3;
 use crate::base::origin::Origin;
 use crate::base::tolerance::{NUDGE, Tolerance};
-use crate::geometry::nurbs::projected;
-use crate::geometry::{Curve, Motion, build};
+use crate::geometry::construct::build;
+use crate::geometry::shapes::nurbs::projected;
+use crate::geometry::{Curve, Motion};
 use crate::io::cad::control_nets::ruled_net;
 use crate::io::cad::curves::{check_reach, transformed, transformed_pole};
 use crate::io::cad::damage::{Damage, damage};
@@ -71,7 +72,7 @@ pub enum Base {
 
 /// Whether equal steps of the parameter are equal lengths.
 fn even(curve: &Curve) -> bool {
-    use crate::geometry::curve::Shape;
+    use crate::geometry::curves::curve::Shape;
     match curve.shape() {
         Shape::Line(..) => true,
         Shape::Arc(arc) => arc.radius.is_some(),
@@ -275,7 +276,7 @@ impl Base {
 
 /// The point of a profile at the parameter of the file, where the curve still has that one or is an arc whose first one is known.
 fn along_file(profile: &Curve, first: Option<f64>, t: f64) -> Option<DVec3> {
-    use crate::geometry::curve::Shape;
+    use crate::geometry::curves::curve::Shape;
     let (a, b) = profile.domain();
     match (profile.shape(), first) {
         (Shape::Line(..) | Shape::Nurbs(_), _) => Some(profile.point(t.clamp(a, b))),

@@ -8,7 +8,7 @@ use glam::DVec3;
 use crate::base::origin::Origin;
 use crate::base::par;
 use crate::base::tolerance::Tolerance;
-use crate::geometry::curve::Shape;
+use crate::geometry::curves::curve::Shape;
 use crate::geometry::{Curve, Kind};
 use crate::io::cad::curve_on_surface::fitted;
 use crate::io::cad::damage::{Damage, damage};

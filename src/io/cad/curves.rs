@@ -6,10 +6,10 @@ use glam::{DAffine3, DVec3, DVec4};
 
 use crate::base::limits;
 use crate::base::tolerance::Tolerance;
-use crate::geometry::arc::EllipticArc;
-use crate::geometry::composite::Composite;
-use crate::geometry::curve::Shape;
-use crate::geometry::nurbs::projected;
+use crate::geometry::curves::composite::Composite;
+use crate::geometry::curves::curve::Shape;
+use crate::geometry::shapes::arc::EllipticArc;
+use crate::geometry::shapes::nurbs::projected;
 use crate::geometry::{Curve, Kind, Nurbs};
 use crate::io::cad::damage::{Damage, damage};
 

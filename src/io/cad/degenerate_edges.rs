@@ -3,8 +3,9 @@
 use glam::DVec3;
 
 use crate::base::tolerance::Tolerance;
-use crate::geometry::nurbs::weighted;
-use crate::geometry::{Curve, closest};
+use crate::geometry::Curve;
+use crate::geometry::closest;
+use crate::geometry::shapes::nurbs::weighted;
 use crate::io::cad::control_nets::{borders, spline};
 use crate::io::cad::damage::Damage;
 use crate::io::cad::elementary_surface::Ground;

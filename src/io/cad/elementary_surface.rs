@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::base::fault::Result;
 use crate::base::math::sin_cos;
 use crate::base::tolerance::{PARALLEL, Tolerance};
-use crate::geometry::nurbs::projected;
+use crate::geometry::shapes::nurbs::projected;
 use crate::io::cad::control_nets::{trimmed_net, with_whole_poles};
 use crate::model::Patch;
 use crate::surface::analysis::elementary::{Elementary, Form};

@@ -3,7 +3,8 @@
 use glam::DVec3;
 
 use crate::base::tolerance::{NEAR_MISS, ONE_BORDER, Tolerance};
-use crate::geometry::{Motion, closest};
+use crate::geometry::Motion;
+use crate::geometry::closest;
 use crate::io::cad::base_surface::Base;
 use crate::io::cad::border::Border;
 use crate::io::cad::healing::{Off, Rule};

@@ -4,8 +4,9 @@ use glam::DVec3;
 
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
-use crate::geometry::curve::Shape;
-use crate::geometry::{Curve, Kind, closest};
+use crate::geometry::closest;
+use crate::geometry::curves::curve::Shape;
+use crate::geometry::{Curve, Kind};
 use crate::io::cad::base_surface::Base;
 use crate::io::cad::border::Border;
 use crate::surface::{Side, Surface};

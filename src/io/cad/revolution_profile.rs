@@ -14,10 +14,12 @@ use glam::DVec3;
 
 use crate::base::math;
 use crate::base::tolerance::{EPSILON, NEAR_MISS, Tolerance};
-use crate::geometry::composite::Composite;
-use crate::geometry::curve::Shape;
-use crate::geometry::intersect::{Hit, intersect};
-use crate::geometry::{Curve, Kind, Motion, build, closest};
+use crate::geometry::closest;
+use crate::geometry::construct::build;
+use crate::geometry::curves::composite::Composite;
+use crate::geometry::curves::curve::Shape;
+use crate::geometry::query::intersect::{Hit, intersect};
+use crate::geometry::{Curve, Kind, Motion};
 use crate::io::cad::base_surface::Base;
 use crate::io::cad::damage::{Damage, damage};
 use crate::io::cad::face_loops::FaceLoops;

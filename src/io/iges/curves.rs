@@ -4,9 +4,10 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3, DVec4};
 
-use crate::geometry::composite::Composite;
-use crate::geometry::curve::Shape;
-use crate::geometry::{Curve, Kind, build};
+use crate::geometry::construct::build;
+use crate::geometry::curves::composite::Composite;
+use crate::geometry::curves::curve::Shape;
+use crate::geometry::{Curve, Kind};
 use crate::io::cad::curves::{check_reach, check_weights, ordered, transformed, weight};
 use crate::io::cad::damage::{Damage, damage};
 use crate::io::iges::conics::{self, Level};

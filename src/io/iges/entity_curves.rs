@@ -130,7 +130,7 @@ pub fn range(r: &mut Reader, (first, last): (f64, f64)) -> (f64, f64) {
 
 /// A spline of degree p has more than p points.
 pub fn check_degree(points: usize, degree: usize) -> Result<(), Damage> {
-    const HIGHEST: usize = crate::geometry::nurbs::MAX_DEGREE;
+    const HIGHEST: usize = crate::geometry::shapes::nurbs::MAX_DEGREE;
     if degree == 0 || degree > HIGHEST {
         return Err(damage(format!("degree {degree} is not read; degrees are 1 to {HIGHEST}")));
     }

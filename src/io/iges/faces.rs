@@ -4,7 +4,8 @@ use glam::DVec3;
 
 use crate::base::job;
 use crate::base::tolerance::{NEAR_MISS, NUDGE};
-use crate::geometry::{Curve, closest};
+use crate::geometry::Curve;
+use crate::geometry::closest;
 use crate::io::cad::base_surface::Base;
 use crate::io::cad::border::{Border, backwards, pieces};
 use crate::io::cad::curve_on_surface::composed;

@@ -5,7 +5,7 @@ use glam::{DVec3, DVec4};
 use crate::base::bbox::Box3;
 use crate::base::math;
 use crate::base::tolerance::{EPSILON, NEAR_MISS, NUDGE, PARALLEL};
-use crate::geometry::nurbs::weighted;
+use crate::geometry::shapes::nurbs::weighted;
 use crate::io::cad::base_surface::Base;
 use crate::io::cad::border::{Border, reach};
 use crate::io::cad::control_nets::trimmed_net;

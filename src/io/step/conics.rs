@@ -5,10 +5,11 @@ use glam::DVec3;
 use crate::base::math;
 use crate::base::origin::Origin;
 use crate::base::tolerance::EPSILON;
-use crate::geometry::arc::EllipticArc;
-use crate::geometry::curve::Shape;
-use crate::geometry::nurbs::weighted;
-use crate::geometry::{Curve, Kind, Nurbs, build};
+use crate::geometry::construct::build;
+use crate::geometry::curves::curve::Shape;
+use crate::geometry::shapes::arc::EllipticArc;
+use crate::geometry::shapes::nurbs::weighted;
+use crate::geometry::{Curve, Kind, Nurbs};
 use crate::io::cad::damage::{Damage, damage};
 
 const TURN: f64 = std::f64::consts::TAU;

@@ -5,9 +5,11 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use crate::base::tolerance::NEAR_MISS;
-use crate::geometry::composite::Composite;
-use crate::geometry::curve::Shape;
-use crate::geometry::{Curve, Kind, build, closest};
+use crate::geometry::closest;
+use crate::geometry::construct::build;
+use crate::geometry::curves::composite::Composite;
+use crate::geometry::curves::curve::Shape;
+use crate::geometry::{Curve, Kind};
 use crate::io::cad::curves::{check_reach, check_weights, ordered};
 use crate::io::cad::damage::{Damage, damage};
 use crate::io::step::conics::Endless;

@@ -3,7 +3,8 @@
 use glam::DVec3;
 
 use crate::base::{job, math};
-use crate::geometry::{Curve, build};
+use crate::geometry::Curve;
+use crate::geometry::construct::build;
 use crate::io::cad::base_surface::Base;
 use crate::io::cad::border::{Border, backwards, pieces};
 use crate::io::cad::damage::{Damage, damage};

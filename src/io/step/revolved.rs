@@ -4,7 +4,8 @@ use glam::DVec3;
 
 use crate::base::math;
 use crate::base::tolerance::PARALLEL;
-use crate::geometry::{Curve, build};
+use crate::geometry::Curve;
+use crate::geometry::construct::build;
 use crate::io::cad::base_surface::{BEYOND, Base};
 use crate::io::cad::damage::{Damage, damage};
 use crate::io::cad::face::Face;

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::geometry::nurbs::MAX_DEGREE;
+use crate::geometry::shapes::nurbs::MAX_DEGREE;
 use crate::io::cad::damage::{Damage, damage};
 use crate::io::step::parameters::Row;
 use crate::io::step::reader::Step;

@@ -5,7 +5,7 @@ use glam::{DVec3, DVec4};
 use crate::base::math;
 use crate::base::tolerance::{EPSILON, PARALLEL};
 use crate::geometry::Curve;
-use crate::geometry::nurbs::weighted;
+use crate::geometry::shapes::nurbs::weighted;
 use crate::io::cad::base_surface::{BEYOND, Base};
 use crate::io::cad::control_nets::trimmed_net;
 use crate::io::cad::curves::check_weights;

@@ -2,7 +2,8 @@
 
 use crate::base::math;
 use crate::base::tolerance::{EPSILON, NUDGE};
-use crate::geometry::{Curve, Motion, build};
+use crate::geometry::construct::build;
+use crate::geometry::{Curve, Motion};
 use crate::io::cad::base_surface::Base;
 use crate::io::cad::control_nets::trimmed_net;
 use crate::io::cad::damage::{Damage, damage};

@@ -4,8 +4,8 @@ use glam::DVec3;
 
 use crate::base::tolerance::{PARALLEL, Tolerance};
 use crate::geometry::Curve;
-use crate::geometry::arc::EllipticArc;
-use crate::geometry::curve::Shape as CurveShape;
+use crate::geometry::curves::curve::Shape as CurveShape;
+use crate::geometry::shapes::arc::EllipticArc;
 use crate::surface::core::shape::Shape;
 use crate::surface::core::surface::Surface;
 use crate::surface::data::kind::Domain;

@@ -11,7 +11,7 @@ use crate::base::job;
 use crate::base::origin::Origin;
 use crate::base::range::Interval3;
 use crate::base::tolerance::{NUDGE, Tolerance};
-use crate::geometry::curve::Shape;
+use crate::geometry::curves::curve::Shape;
 use crate::geometry::{Curve, Jet, Kind, Nurbs};
 use crate::surface::analysis::iso_line::IsoLine;
 use crate::surface::core::surface::Surface;

@@ -3,7 +3,7 @@
 use crate::base::fault::{Fault, Result};
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
-use crate::geometry::build::line;
+use crate::geometry::construct::build::line;
 use crate::network::Chain;
 use crate::surface::blended::coons::{borders, set_kinks};
 use crate::surface::core::shape::Shape;

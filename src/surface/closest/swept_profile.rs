@@ -8,10 +8,11 @@ use glam::DVec3;
 
 use crate::base::math::atan2;
 use crate::base::tolerance::ROUNDING_SHARE;
-use crate::geometry::arc::EllipticArc;
-use crate::geometry::curve::Shape as CurveShape;
-use crate::geometry::nurbs::{projected, weighted};
-use crate::geometry::{Curve, Nurbs, closest as closest_on_curve};
+use crate::geometry::curves::curve::Shape as CurveShape;
+use crate::geometry::query::closest::closest as closest_on_curve;
+use crate::geometry::shapes::arc::EllipticArc;
+use crate::geometry::shapes::nurbs::{projected, weighted};
+use crate::geometry::{Curve, Nurbs};
 use crate::network::{Chain, Run};
 use crate::surface::core::shape::Shape;
 use crate::surface::core::surface::Surface;

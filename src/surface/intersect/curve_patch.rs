@@ -9,7 +9,8 @@ use glam::{DVec2, DVec3};
 use crate::base::solve;
 use crate::base::tolerance::{EPSILON, NEWTON_STEP};
 use crate::geometry::Curve;
-use crate::geometry::pieces::{Node, Rates, View, children};
+use crate::geometry::curves::pieces::{Node, View, children};
+use crate::geometry::shapes::bounds::Rates;
 use crate::surface::closest::foot::Footing;
 use crate::surface::intersect::sheet::{Cell, Sheet, solved};
 

@@ -5,8 +5,9 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use crate::base::tolerance::Tolerance;
-use crate::geometry::curve::Shape;
-use crate::geometry::{Curve, Nurbs, build};
+use crate::geometry::construct::build;
+use crate::geometry::curves::curve::Shape;
+use crate::geometry::{Curve, Nurbs};
 
 /// Ends of curves that are one place: curve and whether its last point is meant.
 type End = (usize, bool);

@@ -286,7 +286,7 @@ impl Boundary {
 
 /// A spline as a curve of its own.
 pub(crate) fn curve(made: Nurbs, origin: Origin) -> Chain {
-    use crate::geometry::curve::Shape;
+    use crate::geometry::curves::curve::Shape;
     use crate::geometry::{Curve, Kind};
     Chain::of_curve(&Curve::new(Shape::Nurbs(std::sync::Arc::new(made)), Kind::Offset, origin))
 }

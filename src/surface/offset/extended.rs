@@ -6,7 +6,7 @@ use crate::base::fault::{Fault, Result};
 use crate::base::math;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
-use crate::geometry::build::line;
+use crate::geometry::construct::build::line;
 use crate::network::Chain;
 use crate::surface::closest::nearest::closest;
 use crate::surface::core::plane;

@@ -7,7 +7,7 @@ use crate::base::math;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::Curve;
-use crate::geometry::build::line;
+use crate::geometry::construct::build::line;
 use crate::network::{Chain, meet};
 use crate::surface::swept::revolve::Axis;
 

@@ -7,7 +7,7 @@ use crate::base::boxtree::BoxTree;
 use crate::base::fault::{Fault, Result, WallEdge, WallFault};
 use crate::base::origin::Origin;
 use crate::base::tolerance::{NUDGE, Tolerance};
-use crate::geometry::build::line;
+use crate::geometry::construct::build::line;
 use crate::network::{Chain, meet};
 use crate::surface::closest::foot;
 use crate::surface::closest::nearest::{Nearest, closest};

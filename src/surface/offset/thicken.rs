@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::base::fault::{Fault, Result, WallEdge, WallFault};
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
-use crate::geometry::build::line;
+use crate::geometry::construct::build::line;
 use crate::network::Chain;
 use crate::surface::blended::plane_face;
 use crate::surface::blended::ruled::ruled;

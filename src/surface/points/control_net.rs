@@ -5,7 +5,7 @@ use glam::{DVec3, DVec4};
 use crate::base::fault::{CurveFault, Result, ValueFault};
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
-use crate::geometry::nurbs::{MAX_DEGREE, weighted};
+use crate::geometry::shapes::nurbs::{MAX_DEGREE, weighted};
 use crate::surface::core::shape::Shape;
 use crate::surface::core::surface::{Parts, Surface};
 use crate::surface::data::flow_words::phrase;
@@ -140,7 +140,7 @@ fn checked_knots(knots: Option<&[f64]>, n: usize, degree: usize, origin: Origin)
         let inner = (1..n - degree).map(|k| k as f64 / (n - degree) as f64);
         return Ok(std::iter::repeat_n(0.0, degree + 1).chain(inner).chain(std::iter::repeat_n(1.0, degree + 1)).collect());
     };
-    crate::geometry::build::check_knots(knots, n, degree, origin)?;
+    crate::geometry::construct::build::check_knots(knots, n, degree, origin)?;
     let (first, last) = (knots[0], knots[knots.len() - 1]);
     if knots[degree] != first || knots[n] != last {
         let range = format!("clamped: the first and the last value {} times", degree + 1);

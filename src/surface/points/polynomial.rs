@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::base::fault::{Result, ValueFault};
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
-use crate::geometry::bounds::binomial;
+use crate::geometry::shapes::bounds::binomial;
 use crate::surface::core::surface::Surface;
 use crate::surface::points::control_net::{self, Net};
 

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::base::fault::{NoBlend, Result};
 use crate::base::origin::Origin;
-use crate::geometry::build::line;
+use crate::geometry::construct::build::line;
 use crate::network::{Chain, meet};
 use crate::surface::core::surface::Surface;
 use crate::surface::offset::boundary::border_chains;

@@ -5,7 +5,7 @@ use glam::{DVec3, DVec4};
 
 use crate::base::range::{Interval, Interval3};
 use crate::base::tolerance::{EPSILON, SAME_SLOPE};
-use crate::geometry::nurbs::{COMMON_DEGREE, MAX_DEGREE, projected};
+use crate::geometry::shapes::nurbs::{COMMON_DEGREE, MAX_DEGREE, projected};
 use crate::surface::data::enclosure::Enclosure;
 use crate::surface::data::one_sided::OneSided;
 use crate::surface::shapes::nurbs::NurbsSurface;

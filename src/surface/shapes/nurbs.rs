@@ -5,7 +5,7 @@ use glam::{DVec3, DVec4};
 use crate::base::bbox::Box3;
 use crate::base::par;
 use crate::base::tolerance::{EPSILON, Tolerance};
-use crate::geometry::nurbs::{COMMON_DEGREE, MAX_DEGREE, projected, weighted};
+use crate::geometry::shapes::nurbs::{COMMON_DEGREE, MAX_DEGREE, projected, weighted};
 use crate::geometry::{Motion, Nurbs};
 use crate::surface::data::breaks::{distinct_inner, tidy};
 use crate::surface::data::jet::Jet2;

@@ -4,8 +4,8 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 
 use glam::DVec4;
 
-use crate::geometry::bounds::binomial;
-use crate::geometry::nurbs::COMMON_DEGREE;
+use crate::geometry::shapes::bounds::binomial;
+use crate::geometry::shapes::nurbs::COMMON_DEGREE;
 use crate::surface::shapes::net_enclosure::NetStrip;
 use crate::surface::shapes::nurbs::{NurbsSurface, multiplicity};
 use crate::surface::shapes::third_derivative_bounds::ThirdDerivativeBounds;

@@ -2,8 +2,8 @@
 
 use glam::DVec4;
 
-use crate::geometry::bounds::binomial;
-use crate::geometry::nurbs::{MAX_DEGREE, projected};
+use crate::geometry::shapes::bounds::binomial;
+use crate::geometry::shapes::nurbs::{MAX_DEGREE, projected};
 use crate::surface::data::one_sided::OneSided;
 use crate::surface::shapes::nurbs::NurbsSurface;
 

@@ -11,7 +11,7 @@ use crate::base::origin::Origin;
 use crate::base::range::{Interval, Interval3};
 use crate::base::tolerance::{EPSILON, Tolerance};
 use crate::base::{math, par};
-use crate::geometry::build::{arc_center, line};
+use crate::geometry::construct::build::{arc_center, line};
 use crate::geometry::{Curve, Jet, Motion};
 use crate::network::Chain;
 use crate::surface::data::breaks::{chain_breaks, tidy};

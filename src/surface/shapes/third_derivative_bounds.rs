@@ -7,8 +7,8 @@ use std::collections::VecDeque;
 
 use glam::{DVec2, DVec3, DVec4};
 
-use crate::geometry::bounds::binomial;
-use crate::geometry::nurbs::projected;
+use crate::geometry::shapes::bounds::binomial;
+use crate::geometry::shapes::nurbs::projected;
 use crate::surface::shapes::net_enclosure::NetStrip;
 use crate::surface::shapes::nurbs::NurbsSurface;
 
@@ -238,7 +238,7 @@ mod tests {
     use super::*;
     use crate::base::origin::Origin;
     use crate::base::tolerance::Tolerance;
-    use crate::geometry::nurbs::weighted;
+    use crate::geometry::shapes::nurbs::weighted;
     use crate::surface::data::kind::SurfaceKind;
     use crate::surface::data::one_sided::OneSided;
 

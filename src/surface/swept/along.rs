@@ -6,7 +6,7 @@ use crate::base::fault::{Fault, Result, SweepFault};
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::Motion;
-use crate::geometry::curve::Shape as CurveShape;
+use crate::geometry::curves::curve::Shape as CurveShape;
 use crate::network::Chain;
 use crate::surface::core::shape::Shape;
 use crate::surface::core::surface::{Parts, Surface};

@@ -118,7 +118,7 @@ pub fn twisted(frame: DMat3, angle: f64) -> DMat3 {
 mod tests {
     use super::*;
     use crate::base::origin::Origin;
-    use crate::geometry::build::helix;
+    use crate::geometry::construct::build::helix;
 
     /// The helix (2 cos t, 2 sin t, t/2) once round, with the angle of the end's frame to the normal of the curve there.
     fn end_angle(carry: impl Fn(&Chain, DVec3) -> DVec3) -> f64 {

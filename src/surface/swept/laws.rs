@@ -240,7 +240,7 @@ pub fn check_section(section: &Chain, station: &Station, law: Law, others: (&Cha
 mod tests {
     use super::*;
     use crate::base::origin::Origin;
-    use crate::geometry::build::{bezier, line};
+    use crate::geometry::construct::build::{bezier, line};
     use crate::surface::swept::sections::Guide;
 
     fn quadratic(points: [(f64, f64, f64); 3]) -> Chain {

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::base::fault::{Fault, Result, SurfaceFault, SweepFault, ValueFault};
 use crate::base::tolerance::{NUDGE, Tolerance};
-use crate::geometry::curve::Shape;
+use crate::geometry::curves::curve::Shape;
 use crate::geometry::{Curve, Kind};
 use crate::network::meet::{closest_points, meet};
 use crate::network::{Chain, Run};

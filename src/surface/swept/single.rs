@@ -4,7 +4,7 @@ use glam::DMat3;
 
 use crate::base::fault::{Fault, Result};
 use crate::base::tolerance::{PARALLEL, Tolerance};
-use crate::geometry::curve::Shape;
+use crate::geometry::curves::curve::Shape;
 use crate::network::Chain;
 use crate::surface::core::surface::Surface;
 use crate::surface::swept::along::{Settings, along, moved_by};

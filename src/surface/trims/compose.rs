@@ -9,10 +9,10 @@ use glam::DVec4;
 
 use crate::base::origin::Origin;
 use crate::base::tolerance::EPSILON;
-use crate::geometry::bounds::binomial;
-use crate::geometry::curve::Shape as CurveShape;
-use crate::geometry::nurbs::{COMMON_DEGREE, projected};
-use crate::geometry::nurbs_edit::Bezier;
+use crate::geometry::curves::curve::Shape as CurveShape;
+use crate::geometry::shapes::bounds::binomial;
+use crate::geometry::shapes::nurbs::{COMMON_DEGREE, projected};
+use crate::geometry::shapes::nurbs_edit::Bezier;
 use crate::geometry::{Curve, Kind, Nurbs};
 use crate::network::Chain;
 use crate::surface::core::shape::Shape;
@@ -187,7 +187,7 @@ mod tests {
 
     use super::*;
     use crate::base::tolerance::Tolerance;
-    use crate::geometry::build;
+    use crate::geometry::construct::build;
     use crate::surface::core::plane;
     use crate::surface::points::control_net::{Net, bezier, nurbs};
 

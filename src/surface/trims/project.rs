@@ -9,7 +9,7 @@ use glam::{DMat3, DVec2, DVec3};
 use crate::base::fault::{CurveFault, Fault, Result, SurfaceFault};
 use crate::base::origin::Origin;
 use crate::base::tolerance::{EPSILON, NUDGE, Tolerance};
-use crate::geometry::curve::Shape;
+use crate::geometry::curves::curve::Shape;
 use crate::geometry::{Curve, Kind, Nurbs};
 use crate::network::Chain;
 use crate::surface::closest::foot;

@@ -3,8 +3,8 @@
 use glam::DVec3;
 
 use crate::base::tolerance::{EPSILON, PARALLEL};
-use crate::geometry::arc::EllipticArc;
-use crate::geometry::curve::Shape;
+use crate::geometry::curves::curve::Shape;
+use crate::geometry::shapes::arc::EllipticArc;
 use crate::geometry::{Curve, Nurbs};
 use crate::io::cad::damage::Damage;
 use crate::io::iges::entity_writer::{Role, Values};

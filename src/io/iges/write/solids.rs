@@ -11,7 +11,8 @@ use glam::{DVec2, DVec3};
 
 use crate::base::job;
 use crate::base::tolerance::Tolerance;
-use crate::geometry::{Closest, Curve, closest};
+use crate::geometry::closest;
+use crate::geometry::{Closest, Curve};
 use crate::io::cad::bodies::{Bodies, Faces};
 use crate::io::cad::control_nets::{NetBorder, borders};
 use crate::io::cad::damage::{Damage, damage};

@@ -1,7 +1,7 @@
 //! Surfaces as IGES entities: B-splines, and planes, cylinders, cones, spheres and tori of solids.
 
 use crate::base::tolerance::Tolerance;
-use crate::geometry::nurbs::projected;
+use crate::geometry::shapes::nurbs::projected;
 use crate::io::cad::elementary_surface::Ground;
 use crate::io::iges::entity_writer::{Role, Values};
 use crate::io::iges::write::maker::Maker;

@@ -6,8 +6,9 @@ use glam::{BVec3, DAffine3, DMat3, DVec3};
 
 use crate::base::bbox::Box3;
 use crate::base::tolerance::NUDGE;
-use crate::geometry::curve::Shape;
-use crate::geometry::{Curve, Kind, build};
+use crate::geometry::construct::build;
+use crate::geometry::curves::curve::Shape;
+use crate::geometry::{Curve, Kind};
 use crate::io::cad::base_surface::Base;
 use crate::io::cad::curve_on_surface::{composed, fitted};
 use crate::io::cad::curves::transformed;

@@ -3,8 +3,8 @@
 use glam::DVec3;
 
 use crate::base::fault::Result;
-use crate::geometry::arc::EllipticArc;
-use crate::geometry::curve::Shape;
+use crate::geometry::curves::curve::Shape;
+use crate::geometry::shapes::arc::EllipticArc;
 use crate::geometry::{Curve, Nurbs};
 use crate::io::step::write::records::{Id, Records, Values};
 use crate::io::step::write::things::Scale;

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::geometry::nurbs::projected;
+use crate::geometry::shapes::nurbs::projected;
 use crate::io::cad::elementary_surface::Ground;
 use crate::io::step::write::curves::knots;
 use crate::io::step::write::records::{Id, Records, Values};

@@ -2,7 +2,7 @@
 
 use crate::base::fault::ValueFault;
 use crate::builtins;
-use crate::geometry::fit::{Fit, fit};
+use crate::geometry::construct::fit::{Fit, fit};
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
 use crate::lang::eval::std::curves::{places, unit, whole};

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::base::fault::ValueFault;
 use crate::base::job;
-use crate::geometry::build;
+use crate::geometry::construct::build;
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
 use crate::lang::values::types::{Angle, Length, Point};

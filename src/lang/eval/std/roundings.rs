@@ -1,7 +1,7 @@
 //! Corners of curves made round or cut.
 
 use crate::builtins;
-use crate::geometry::fillet::{Treatment, treat};
+use crate::geometry::construct::fillet::{Treatment, treat};
 use crate::lang::eval::std::curves::{places, whole};
 use crate::lang::values::types::{Length, Point};
 use crate::network::Chain;

@@ -7,7 +7,7 @@ use glam::{DVec3, DVec4};
 
 use crate::base::bbox::Box3;
 use crate::base::range::Interval3;
-use crate::geometry::nurbs::{projected, weighted};
+use crate::geometry::shapes::nurbs::{projected, weighted};
 use crate::geometry::{Jet, Nurbs};
 use crate::surface::analysis::as_net::family::{Course, Family};
 use crate::surface::analysis::as_net::splines::Breaks;

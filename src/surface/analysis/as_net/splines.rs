@@ -261,7 +261,7 @@ mod tests {
                 // Symmetric multilinear form: the mean over the choices of so many of the knots.
                 let mut e = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0];
                 own.iter().for_each(|t| (1..=degree).rev().for_each(|r| e[r] += e[r - 1] * t));
-                let binomial = crate::geometry::bounds::binomial;
+                let binomial = crate::geometry::shapes::bounds::binomial;
                 let polar: f64 = (0..=degree).map(|r| coefficients[r] * e[r] / binomial(degree, r)).sum();
                 assert!((pole - polar).abs() < 1e-11, "{degree} {i}: {pole} {polar}");
             }

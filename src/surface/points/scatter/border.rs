@@ -9,7 +9,7 @@ use crate::base::fault::{Fault, Result, SurfaceFault};
 use crate::base::job;
 use crate::base::origin::Origin;
 use crate::base::tolerance::{NUDGE, Tolerance};
-use crate::geometry::curve::Shape as CurveShape;
+use crate::geometry::curves::curve::Shape as CurveShape;
 use crate::geometry::{Curve, Kind, Nurbs};
 use crate::network::Chain;
 use crate::surface::core::shape::Shape;

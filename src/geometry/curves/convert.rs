@@ -1,0 +1,64 @@
+//! Curves as rational B-splines.
+
+use crate::base::fault::{CurveFault, Result};
+use crate::base::tolerance::Tolerance;
+use crate::geometry::curves::curve::{Curve, Shape};
+use crate::geometry::shapes::nurbs::Nurbs;
+
+/// Pieces of an approximation at most.
+const MOST_PIECES: usize = 1 << 16;
+
+impl Curve {
+    /// The rational B-spline that is the curve itself, if there is one.
+    pub fn exact_nurbs(&self) -> Option<Nurbs> {
+        match self.shape() {
+            Shape::Line(a, b) => Some(Nurbs::line(*a, *b)),
+            Shape::Arc(arc) => Some(arc.to_nurbs()),
+            Shape::Nurbs(c) => Some(c.as_ref().clone()),
+            Shape::Composite(c) => {
+                c.pieces.iter().map(Self::exact_nurbs).collect::<Option<Vec<Nurbs>>>().map(|pieces| Nurbs::joined(&pieces))
+            }
+            Shape::Helix(_) | Shape::Offset(_) => None,
+        }
+    }
+
+    /// The rational B-spline form; exact where there is one, else within `tolerance.point`.
+    pub fn to_nurbs(&self, tolerance: &Tolerance) -> Result<Nurbs> {
+        match (self.exact_nurbs(), self.shape()) {
+            (Some(exact), _) => Ok(exact),
+            (None, Shape::Composite(c)) => {
+                let pieces: Result<Vec<Nurbs>> = c.pieces.iter().map(|p| p.to_nurbs(tolerance)).collect();
+                Ok(Nurbs::joined(&pieces?))
+            }
+            (None, _) => self.hermite(tolerance),
+        }
+    }
+
+    /// Cubic Hermite pieces, halved where the curve leaves them by more than the tolerance.
+    fn hermite(&self, tolerance: &Tolerance) -> Result<Nurbs> {
+        let mut pieces = Vec::new();
+        for span in self.knots().windows(2) {
+            let mut open = vec![(span[0], span[1])];
+            while let Some((a, b)) = open.pop() {
+                let (from, to, h) = (self.jet(a), self.jet_before(b), b - a);
+                let poles = [from.p, from.p + from.d1 * (h / 3.0), to.p - to.d1 * (h / 3.0), to.p];
+                let cubic = Nurbs::bezier(a, b, poles.iter().map(|p| p.extend(1.0)).collect());
+                // The error of a Hermite cubic is a quartic bump; half the tolerance covers what samples miss of it.
+                let far = (1..8).any(|i| {
+                    let t = a + h * f64::from(i) / 8.0;
+                    cubic.jet(t).p.distance(self.point(t)) > 0.5 * tolerance.point
+                });
+                if !far {
+                    pieces.push(cubic);
+                } else if pieces.len() + open.len() > MOST_PIECES {
+                    return Err(CurveFault::NotConverged { of: self.origin(), what: "the spline form".to_owned(), at: from.p }.into());
+                } else {
+                    let middle = 0.5 * (a + b);
+                    open.push((middle, b));
+                    open.push((a, middle));
+                }
+            }
+        }
+        Ok(Nurbs::joined(&pieces))
+    }
+}

@@ -1,0 +1,4 @@
+//! What all curves have in common: points with derivatives, and motions.
+
+pub mod jet;
+pub mod motion;

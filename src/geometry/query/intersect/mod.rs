@@ -1,0 +1,90 @@
+//! Where curves meet in space.
+//!
+//! `search` isolates meetings with guaranteed bounds and settles crossings, `contact` works out where curves run
+//! along each other, `merge` makes each meeting one hit.
+
+pub mod circles;
+pub mod contact;
+pub mod merge;
+pub mod newton;
+pub mod search;
+
+use glam::DVec3;
+
+use crate::base::fault::{CurveFault, Result};
+use crate::base::tolerance::Tolerance;
+use crate::base::work;
+use crate::geometry::curves::curve::Curve;
+use crate::geometry::query::intersect::search::{Search, Side};
+
+/// Pairs of parts that are looked at in the time of an evaluation of a curve.
+const PER_EVALUATION: u64 = 2;
+
+/// One meeting of two curves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Hit {
+    /// They come within the tolerance at one place.
+    Point {
+        /// Parameter on the first curve.
+        ta: f64,
+        /// Parameter on the second curve.
+        tb: f64,
+        /// The mean of the two points.
+        at: DVec3,
+        /// Distance of the two points, model units.
+        gap: f64,
+        /// Whether they touch without crossing; at an end, whether their directions are parallel.
+        tangent: bool,
+    },
+    /// They run within the tolerance of each other.
+    Overlap {
+        /// Ascending parameters on the first curve.
+        a: (f64, f64),
+        /// Parameters on the second curve at the same ends; descending when it runs the other way.
+        b: (f64, f64),
+    },
+}
+
+impl Hit {
+    /// First parameter on the first curve.
+    pub fn start(&self) -> f64 {
+        match self {
+            Self::Point { ta, .. } => *ta,
+            Self::Overlap { a, .. } => a.0,
+        }
+    }
+}
+
+/// All meetings of two curves within `tolerance.point`, ordered along `a`.
+///
+/// A tangential contact is one hit; two crossings are two as long as they are further apart than the tolerance. An
+/// end that lies on the other curve within the tolerance is a hit at exactly that end. On a closed curve the first
+/// parameter stands for the last one too. E413 when the work exceeds its limit.
+pub fn intersect(a: &Curve, b: &Curve, tolerance: &Tolerance) -> Result<Vec<Hit>> {
+    let mut search = Search::new(Side::of(a), Side::of(b), tolerance.point);
+    search.run();
+    finish(search, tolerance)
+}
+
+/// Where a curve meets itself, other than the common ends of a closed one.
+pub fn self_intersect(curve: &Curve, tolerance: &Tolerance) -> Result<Vec<Hit>> {
+    let side = Side::of(curve);
+    let mut search = Search::new(side, side, tolerance.point);
+    search.run_self();
+    let mut hits = finish(search, tolerance)?;
+    hits.retain(|hit| match hit {
+        Hit::Point { ta, tb, .. } => !merge::same_place(curve, *ta, *tb, tolerance.point),
+        Hit::Overlap { .. } => true,
+    });
+    Ok(hits)
+}
+
+fn finish(mut search: Search, tolerance: &Tolerance) -> Result<Vec<Hit>> {
+    work::spend(search.looked_at as u64 / PER_EVALUATION);
+    if let Some(at) = search.exhausted {
+        let what = "where two curves meet".to_owned();
+        return Err(CurveFault::NotConverged { of: search.a.curve.origin(), what, at }.into());
+    }
+    let shared = if search.near.is_empty() { Vec::new() } else { contact::resolve(&mut search, tolerance) };
+    Ok(merge::hits(&search, &shared, tolerance))
+}
