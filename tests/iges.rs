@@ -12,10 +12,10 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use lofting::base::bbox::Box3;
-use lofting::base::fault::Malformed;
 use lofting::base::origin::Origin;
 use lofting::base::quadrature::gauss_legendre;
 use lofting::base::tolerance::Tolerance;
+use lofting::io::files::fault::Malformed;
 use lofting::io::iges::{Options, Part, open};
 use lofting::model::measure;
 use lofting::surface::{Domain, Surface};

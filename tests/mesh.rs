@@ -318,7 +318,7 @@ fn strips_pass_a_count_on_and_refuse_two() {
     plan.rules.push(count(2, 6, 2));
     let fault = scene.mesh(&plan).unwrap_err();
     assert_eq!(fault.code().0, "E702");
-    let report = lofting::base::fault::Describe::describe(&fault, &Plain);
+    let report = fault.describe(&Plain);
     assert!(report.labels.iter().any(|l| l.1 == "4 elements") && report.labels.iter().any(|l| l.1 == "6 elements"), "{report:?}");
 }
 
@@ -480,7 +480,7 @@ fn written_counts_too_coarse_for_a_limit_name_both() {
         ..Rule::on(Target::Chain(chain(&curves[0])), Origin(8))
     }];
     let fault = scene.mesh(&plan).unwrap_err();
-    let report = lofting::base::fault::Describe::describe(&fault, &Plain);
+    let report = fault.describe(&Plain);
     assert_eq!(report.code.0, "E703");
     assert!(report.labels.len() == 2 && report.help.as_deref() == Some("count: 11"), "{report:?}");
     plan.rules[0].settings.count = Some((11, Origin(8)));

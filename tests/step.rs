@@ -10,10 +10,10 @@ use std::time::Instant;
 
 use file::{can, file};
 use lofting::base::bbox::Box3;
-use lofting::base::fault::Malformed;
 use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
 use lofting::io::cad::part::{Options, Part};
+use lofting::io::files::fault::Malformed;
 use lofting::io::step::open;
 use lofting::model::measure;
 use serde_json::Value as Json;

@@ -4,7 +4,7 @@ use std::fmt;
 
 use super::model::Model;
 use super::names::{Names, Speaker};
-use crate::base::fault::{Describe, Fault, Say, Severity, ValueFault};
+use crate::base::fault::{Fault, Say, Severity, ValueFault};
 use crate::session::guard::Bug;
 use crate::session::report::{DiagnosticRow, LabelRow};
 

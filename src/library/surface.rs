@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::curve::{Curve, direction, place, rotation};
 use super::error::{Error, row};
 use super::names::{Names, Speaker, fresh};
-use crate::base::fault::{Fault, LoopFault, ValueFault};
+use crate::base::fault::{Fault, ValueFault};
 use crate::base::limits::CALL_WORK;
 use crate::base::tolerance::Tolerance;
 use crate::base::work::{Budget, Exceeded};
@@ -18,6 +18,7 @@ use crate::surface::blended::coons::{self, Grid, Method, Settings};
 use crate::surface::blended::skin::{self, Across};
 use crate::surface::blended::skin_align::Section;
 use crate::surface::blended::skin_ends::Leaving;
+use crate::surface::faults::LoopFault;
 use crate::surface::{self, Domain, Reparam};
 
 /// A surface over parameters u and v. Cheap to clone.

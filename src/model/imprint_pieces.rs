@@ -8,12 +8,14 @@ use super::imprint::{Met, beside};
 use super::measure::area_within;
 use super::topology::{EdgeId, Model, SurfaceId};
 use crate::base::bbox::Box3;
-use crate::base::fault::{CurveFault, CutFault, Fault, Result};
+use crate::base::fault::Result;
 use crate::base::job::Job;
 use crate::base::origin::Origin;
 use crate::base::par;
 use crate::base::tolerance::{MEASURE_ACCURACY, Tolerance};
+use crate::geometry::data::fault::CurveFault;
 use crate::network::{Chain, Network};
+use crate::surface::faults::CutFault;
 use crate::surface::intersect::with_curve::with_curve;
 use crate::surface::{Domain, Nearest, Surface, split, with_loops};
 
@@ -111,17 +113,16 @@ fn lies_on(chain: &Chain, others: &[Chain], tolerance: &Tolerance) -> bool {
 fn parts(surface: &Surface, mut cutters: Vec<Chain>, tolerance: &Tolerance) -> Result<Vec<Surface>> {
     while !cutters.is_empty() {
         match split(surface, &cutters, surface.origin(), tolerance) {
-            Err(Fault::Cut(fault)) => {
-                let CutFault::CutOpen { ends, .. } = &*fault else { return Err(Fault::Cut(fault)) };
+            Ok(found) => return whole(surface, found, tolerance),
+            Err(fault) => {
+                let Some(CutFault::CutOpen { ends, .. }) = fault.of() else { return Err(fault) };
                 let loose = |c: &Chain| [c.start(), c.end()].into_iter().any(|p| ends.iter().any(|end| tolerance.same_point(p, *end)));
                 let before = cutters.len();
                 cutters.retain(|c| !loose(c));
                 if cutters.len() == before {
-                    return Err(Fault::Cut(fault));
+                    return Err(fault);
                 }
             }
-            Ok(found) => return whole(surface, found, tolerance),
-            Err(fault) => return Err(fault),
         }
     }
     Ok(vec![surface.clone()])

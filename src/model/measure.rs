@@ -12,11 +12,12 @@ use super::measure_quadrature::{Rectangle, WHOLE, integral};
 use super::measure_triangles::triangles_integral;
 use super::measure_trimmed::trimmed_integral;
 use crate::base::bbox::Box3;
-use crate::base::fault::{CutFault, Result};
+use crate::base::fault::Result;
 use crate::base::par;
 use crate::base::quadrature::integrate;
 use crate::base::tolerance::{LEAST_SIZE, MEASURE_ACCURACY, SIGN_ACCURACY, TOLD_APART, Tolerance};
 use crate::network::Chain;
+use crate::surface::faults::CutFault;
 use crate::surface::{Domain, Jet2, Surface, SurfaceKind, bbox, boxed, chain_breaks};
 
 /// A thin sheet of mass 1 per area.

@@ -8,6 +8,7 @@ mod cut_border;
 mod cut_triangles;
 mod edge_chain;
 mod evened;
+pub mod fault;
 mod feet;
 pub mod gather;
 pub mod glue;

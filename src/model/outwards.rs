@@ -1,5 +1,6 @@
 //! Closed skins point out of the material: outwards, and a skin inside another one, round a cavity, into the cavity.
 
+use crate::model::fault::ModelFault;
 use glam::DVec3;
 
 use super::measure;
@@ -7,13 +8,16 @@ use super::shells::ShellRequest;
 use super::sides::Component;
 use super::topology::{Model, SurfaceId};
 use crate::base::bbox::Box3;
-use crate::base::fault::{CurveFault, CutFault, Fault, Result, SurfaceFault, Touching};
+use crate::base::fault::{Fault, Result};
 use crate::base::job;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::construct::build::line;
+use crate::geometry::data::fault::CurveFault;
+use crate::model::fault::Touching;
 use crate::network::Chain;
 use crate::surface::Surface;
+use crate::surface::faults::CutFault;
 use crate::surface::intersect::with_curve::with_curve;
 use crate::surface::intersect::with_surfaces::with_surfaces;
 
@@ -87,7 +91,7 @@ impl Model {
                 if let Some(&(a, b, (how, at))) = found.get(covers.unwrap_or(0)) {
                     let names = (self.surfaces[a.index()].name.clone(), self.surfaces[b.index()].name.clone());
                     let (a, b) = (surface(a).origin(), surface(b).origin());
-                    sink.push(SurfaceFault::FacesTouch { within: request.origin, a, b, names, how, at, imprint: request.branches }.into());
+                    sink.push(ModelFault::FacesTouch { within: request.origin, a, b, names, how, at, imprint: request.branches }.into());
                 }
             }
         }
@@ -120,11 +124,10 @@ fn touching(a: &Surface, b: &Surface, tolerance: &Tolerance) -> Result<Option<(T
             let at = common.curves.first().map(|c| c.point(0.5)).or(common.touches.first().copied());
             Ok(at.map(|at| (Touching::Meeting, at)))
         }
-        Err(Fault::Cut(fault)) => match *fault {
-            CutFault::RunAlong { at, .. } => Ok(Some((Touching::Overlap, at))),
-            other => Err(other.into()),
+        Err(fault) => match fault.of() {
+            Some(CutFault::RunAlong { at, .. }) => Ok(Some((Touching::Overlap, *at))),
+            _ => Err(fault),
         },
-        Err(fault) => Err(fault),
     }
 }
 

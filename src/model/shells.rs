@@ -1,5 +1,6 @@
 //! Shells: surfaces as one skin, connected and oriented [Koh & Park 1990, §4.3].
 
+use crate::model::fault::ModelFault;
 use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec3;
@@ -11,7 +12,7 @@ use super::sew::Seams;
 use super::sides::{Component, Usage, components, usages};
 use super::topology::{EdgeId, Model, PatchId, Shell, SurfaceId};
 use super::trace::Track;
-use crate::base::fault::{Fault, Result, SurfaceFault};
+use crate::base::fault::{Fault, Result};
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::network::Network;
@@ -64,7 +65,7 @@ impl Model {
         if let Some(longest) = free.iter().copied().max_by(|a, b| pieces.segments[*a].length().total_cmp(&pieces.segments[*b].length())) {
             let length = free.iter().map(|a| pieces.segments[*a].length()).sum();
             let at = joins.middle(longest);
-            sink.push(SurfaceFault::ShellOpen { shell: request.origin, edges: free.len(), length, at }.into());
+            sink.push(ModelFault::ShellOpen { shell: request.origin, edges: free.len(), length, at }.into());
         }
         let mut free: Vec<_> =
             free.iter().flat_map(|a| usages[*a].iter().map(|(s, _)| (*s, joins.middle(*a), pieces.segments[*a].length()))).collect();
@@ -144,7 +145,7 @@ impl Model {
             if users.len() > 2 {
                 let at = joins.middle(segment);
                 let users = users.iter().map(|(s, _)| self.origin_of(*s)).collect();
-                return Err(SurfaceFault::ShellNonManifold { shell: request.origin, users, at }.into());
+                return Err(ModelFault::ShellNonManifold { shell: request.origin, users, at }.into());
             }
         }
         Ok(())
@@ -164,7 +165,7 @@ impl Model {
         if let Some(one_sided) = components.iter().find_map(|c| c.one_sided.as_ref()) {
             let (a, b) = (self.origin_of(one_sided.faces.0), self.origin_of(one_sided.faces.1));
             let at = joins.middle(one_sided.segment);
-            return Err(SurfaceFault::ShellNotOrientable { shell: request.origin, a, b, at }.into());
+            return Err(ModelFault::ShellNotOrientable { shell: request.origin, a, b, at }.into());
         }
         match components.as_slice() {
             [first, others @ ..] if !others.is_empty() => {
@@ -198,7 +199,7 @@ impl Model {
         let (joined, apart) = (ids(first), ids(apart));
         let found = self.apart(&joined, &apart);
         let (a, b, gap, at) = found.map_or((joined[0], apart[0], 0.0, DVec3::ZERO), |f| (f.surfaces.0, f.surfaces.1, f.gap, f.at));
-        SurfaceFault::NotAdjacent { a: self.origin_of(a), b: self.origin_of(b), gap, at }.into()
+        ModelFault::NotAdjacent { a: self.origin_of(a), b: self.origin_of(b), gap, at }.into()
     }
 }
 

@@ -11,10 +11,12 @@ use super::graph::{CurveId, Link, LinkId, NetCurve, Node, NodeId};
 use super::hits::Contact;
 use super::shared;
 use crate::base::bbox::Box3;
-use crate::base::fault::{Fault, NetworkFault, Result, round_down};
+use crate::base::fault::quantities::round_down;
+use crate::base::fault::{Fault, Result};
 use crate::base::math::compare_points;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
+use crate::network::fault::NetworkFault;
 
 /// What a network is assembled from.
 pub struct Parts<'a> {

@@ -12,12 +12,13 @@ use super::enclosure::{self, ChainEnclosure};
 use super::slice;
 use crate::base::bbox::Box3;
 use crate::base::digest::{StableHash, StableHasher};
-use crate::base::fault::{NetworkFault, Result};
+use crate::base::fault::Result;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::construct::build;
 use crate::geometry::curves::curve::Shape;
 use crate::geometry::{Curve, Jet, Motion};
+use crate::network::fault::NetworkFault;
 
 /// A run along one curve between two arc lengths; backwards when `s1 < s0`.
 ///

@@ -1,5 +1,6 @@
 //! Flows of chains: meetings become node lists, node lists become a flow, failures get their measurements.
 
+use crate::network::grid_fault::GridFault;
 use glam::DVec3;
 
 use super::chain::Chain;
@@ -8,11 +9,13 @@ use super::flow::{Flow, FlowFault, FlowOptions, NodeList};
 use super::meet::{closest_points, meet};
 use super::ring_way::same_way;
 use super::snap::may_snap;
-use crate::base::fault::{CurveEnd, Fault, NetworkFault, NoFlow, Result, SurfaceFault};
+use crate::base::fault::{Fault, Result};
 use crate::base::job;
 use crate::base::origin::Origin;
 use crate::base::par;
 use crate::base::tolerance::Tolerance;
+use crate::network::fault::{CurveEnd, NetworkFault};
+use crate::network::no_flow::NoFlow;
 
 /// What the script says about a flow of chains.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -115,7 +118,7 @@ fn nearest(nodes: &[DVec3], p: DVec3, tolerance: &Tolerance) -> Option<usize> {
 fn no_pole(chains: &[Chain], pole: DVec3) -> Fault {
     let ends = chains.iter().flat_map(|c| [c.start(), c.end()]);
     let nearest = ends.min_by(|a, b| a.distance_squared(pole).total_cmp(&b.distance_squared(pole))).unwrap_or(pole);
-    SurfaceFault::FlowUnknown { curves: origins(chains), why: NoFlow::NoPole { pole, nearest } }.into()
+    GridFault::FlowUnknown { curves: origins(chains), why: NoFlow::NoPole { pole, nearest } }.into()
 }
 
 fn origins(chains: &[Chain]) -> Vec<Origin> {
@@ -135,7 +138,7 @@ pub(super) fn explain(
         return miss;
     }
     let origin = |k: usize| chains[k].origin();
-    let unknown = |why: NoFlow| SurfaceFault::FlowUnknown { curves: origins(chains), why };
+    let unknown = |why: NoFlow| GridFault::FlowUnknown { curves: origins(chains), why };
     match fault {
         FlowFault::TooFew { given } => unknown(NoFlow::TooFewCurves { given }),
         FlowFault::Alone { curve } => {
@@ -150,15 +153,15 @@ pub(super) fn explain(
         FlowFault::NoFamilies { a, b, node } => unknown(NoFlow::NoFamilies { a: origin(a), b: origin(b), at: nodes[node] }),
         FlowFault::Incomplete { a, b, found, wanted } => {
             let (p, q) = closest_points(&chains[a], &chains[b]);
-            SurfaceFault::GridIncomplete { a: origin(a), b: origin(b), gap: p.distance(q), at: p, found, wanted }
+            GridFault::GridIncomplete { a: origin(a), b: origin(b), gap: p.distance(q), at: p, found, wanted }
         }
         FlowFault::Double { a, b, nodes: (one, two) } => {
-            SurfaceFault::GridDouble { a: origin(a), b: origin(b), first: nodes[one], second: nodes[two] }
+            GridFault::GridDouble { a: origin(a), b: origin(b), first: nodes[one], second: nodes[two] }
         }
         FlowFault::NotMonotone { curve, others: (a, b), nodes: (one, two) } => {
-            SurfaceFault::GridNotMonotone { curve: origin(curve), a: origin(a), b: origin(b), first: nodes[one], second: nodes[two] }
+            GridFault::GridNotMonotone { curve: origin(curve), a: origin(a), b: origin(b), first: nodes[one], second: nodes[two] }
         }
-        FlowFault::Crosses { a, b, node } => SurfaceFault::FamilyCrosses { a: origin(a), b: origin(b), at: nodes[node] },
+        FlowFault::Crosses { a, b, node } => GridFault::FamilyCrosses { a: origin(a), b: origin(b), at: nodes[node] },
         FlowFault::HalfClosed { closed, open } => unknown(NoFlow::HalfClosed { closed: origin(closed), open: origin(open) }),
         FlowFault::NotClosed { open } => unknown(NoFlow::NotClosed { open: origin(open) }),
         FlowFault::NoPole { node } => return no_pole(chains, nodes[node]),

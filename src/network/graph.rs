@@ -11,12 +11,13 @@ use super::assemble::{Parts, assemble};
 use super::chain::{Chain, Run, same_curve};
 use super::hits::{self, Contact};
 use super::near::near_misses;
-use crate::base::fault::{Fault, NetworkFault, Result};
+use crate::base::fault::{Fault, Result};
 use crate::base::job::Job;
 use crate::base::math::compare_points;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::Curve;
+use crate::network::fault::NetworkFault;
 
 crate::ids! {
     /// A node of the network.
@@ -254,11 +255,8 @@ impl Network {
 
 /// Whether a note speaks of the curve.
 fn concerns(note: &Fault, of: Origin) -> bool {
-    match note {
-        Fault::Network(fault) => match **fault {
-            NetworkFault::SharedRun { owner, other, .. } => owner == of || other == of,
-            _ => true,
-        },
+    match note.of() {
+        Some(NetworkFault::SharedRun { owner, other, .. }) => *owner == of || *other == of,
         _ => true,
     }
 }

@@ -4,11 +4,12 @@ use glam::DVec3;
 
 use super::chain::{Chain, Run, same_curve};
 use super::snap::may_snap;
-use crate::base::fault::{NetworkFault, Result};
+use crate::base::fault::Result;
 use crate::base::job;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::intersect;
 use crate::geometry::{Hit, closest_pair};
+use crate::network::fault::NetworkFault;
 
 /// One meeting of two chains: a node of the two, or the ends of a shared run.
 #[derive(Clone, Copy, Debug, PartialEq)]

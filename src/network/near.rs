@@ -11,10 +11,11 @@ use glam::DVec3;
 use super::graph::{NetCurve, NodeId};
 use crate::base::bbox::Box3;
 use crate::base::boxtree::BoxTree;
-use crate::base::fault::{CurveEnd, Fault, NetworkFault};
+use crate::base::fault::Fault;
 use crate::base::par;
 use crate::base::tolerance::{NEAR_MISS, Tolerance};
 use crate::geometry::closest;
+use crate::network::fault::{CurveEnd, NetworkFault};
 
 /// A curve as long as the model is cut into about this many stretches.
 const STRETCHES: f64 = 24.0;

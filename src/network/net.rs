@@ -11,9 +11,10 @@ use super::flow_chains::{explain, node_lists};
 use super::meet::closest_points;
 use super::ring_way::same_way;
 use super::snap::may_snap;
-use crate::base::fault::{Fault, NetFault, Result};
+use crate::base::fault::{Fault, Result};
 use crate::base::math::compare_points;
 use crate::base::tolerance::Tolerance;
+use crate::surface::faults::NetFault;
 
 /// Places along a curve at which two curves are compared.
 const COMPARED: usize = 32;

@@ -4,9 +4,10 @@ use super::assemble::{Parts, Station, Stations, settle};
 use super::cluster::Sets;
 use super::graph::NetCurve;
 use super::hits::{Contact, ranks};
-use crate::base::fault::{Fault, NetworkFault};
+use crate::base::fault::Fault;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::closest;
+use crate::network::fault::NetworkFault;
 
 /// Rounds of carrying nodes from curve to curve over shared stretches; chains of more curves than this are not one run.
 const ROUNDS: usize = 16;

@@ -4,11 +4,12 @@ use glam::DVec3;
 
 use super::chain::{Chain, Run, same_curve};
 use super::snap::may_snap;
-use crate::base::fault::{CurveEnd, NetworkFault, Result};
+use crate::base::fault::Result;
 use crate::base::origin::Origin;
 use crate::base::tolerance::{SLIVER, Tolerance};
 use crate::geometry::Curve;
 use crate::geometry::query::closest::closest as closest_on_curve;
+use crate::network::fault::{CurveEnd, NetworkFault};
 
 /// [`Chain::slice`].
 pub fn slice(chain: &Chain, (f0, f1): (f64, f64), tolerance: &Tolerance) -> Result<Chain> {

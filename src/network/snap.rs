@@ -3,10 +3,11 @@
 use glam::DVec3;
 
 use super::cluster::cluster;
-use crate::base::fault::{CurveEnd, Fault, NetworkFault, Result};
+use crate::base::fault::{Fault, Result};
 use crate::base::math::compare_points;
 use crate::base::origin::Origin;
 use crate::base::tolerance::{SNAP_SHARE, Tolerance};
+use crate::network::fault::{CurveEnd, NetworkFault};
 
 /// An end that `snap` looks at.
 #[derive(Clone, Copy, Debug, PartialEq)]

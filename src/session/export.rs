@@ -5,11 +5,12 @@ use std::io::Write;
 use glam::DVec3;
 
 use super::report::{OutputRow, RenamedRow};
-use crate::base::fault::{Edit, FileFault, Say};
+use crate::base::fault::{Edit, Say};
 use crate::base::limits::FILE_WORK;
 use crate::base::origin::Origin;
 use crate::base::work::{Budget, Exceeded};
 use crate::io::curve_files::polylines::{Drawing, Polyline};
+use crate::io::files::fault::FileFault;
 use crate::io::formats::choice::curve_format_for;
 use crate::io::formats::endings::{IGES, STEP, Sort, misfit};
 use crate::io::tables::json::{self, Json};

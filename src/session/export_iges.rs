@@ -2,9 +2,10 @@
 
 use super::export::{Colors, Written, no_mesh_settings, put, unit_of};
 use super::export_faces::{layers, surfaces_of, whole};
-use crate::base::fault::{FileFault, Say};
+use crate::base::fault::Say;
 use crate::base::origin::Origin;
 use crate::io::Files;
+use crate::io::files::fault::FileFault;
 use crate::io::iges::write::{self, Scale, Shown, Thing};
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;

@@ -4,10 +4,11 @@ use std::sync::Arc;
 
 use super::export::{Colors, Written, no_mesh_settings, put, unit_of};
 use super::export_faces::{layers, lone, surfaces_of, whole};
-use crate::base::fault::{FileFault, Say};
+use crate::base::fault::Say;
 use crate::base::origin::Origin;
 use crate::io::cad::assembly::Node;
 use crate::io::cad::bodies::Faces;
+use crate::io::files::fault::FileFault;
 use crate::io::step::write::{self, Measured, Scale, Schema, Setup, Shown, Thing};
 use crate::io::{Files, Loss};
 use crate::lang::eval::context::Cx;

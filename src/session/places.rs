@@ -5,8 +5,8 @@ use std::path::Path;
 
 use super::disk::same_file;
 use super::store::Store;
-use crate::base::fault::FileFault;
 use crate::base::origin::Origin;
+use crate::io::files::fault::FileFault;
 use crate::lang::eval::context::Cx;
 
 /// Says E812 for each file that several outputs of the script would write, and E813 for each output over the script, a

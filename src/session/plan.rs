@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::consumed::is_part;
-use crate::base::fault::{Fault, MeshFault, Say, ValueFault};
+use crate::base::fault::{Fault, Say, ValueFault};
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::lang::eval::context::Cx;
@@ -11,6 +11,7 @@ use crate::lang::eval::halt::Halt;
 use crate::lang::eval::scene::Scene;
 use crate::lang::values::plans::{MeshSpec, RuleSpec};
 use crate::lang::values::value::{BodyKind, Home, ModuleId, ShellValue, Value};
+use crate::mesh::request::fault::MeshFault;
 use crate::mesh::request::plan::{GroupRequest, Place, Refine, Target};
 use crate::mesh::{Plan, Rule};
 use crate::model::carry::Stage;

@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
-use crate::base::fault::FileFault;
 use crate::base::origin::Origin;
 use crate::draw::color::{BACK, BAD_TO_GOOD, BELOW_TO_ABOVE, FRONT, LITTLE_TO_MUCH, NAMES};
 use crate::draw::faces::Show;
 use crate::draw::meshes::{self, Measure};
 use crate::draw::{Paint, Scale, Scene as Drawing, Sheet};
+use crate::io::files::fault::FileFault;
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
 use crate::lang::values::plans::PictureSpec;

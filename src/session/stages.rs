@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use glam::DVec3;
 
-use crate::base::fault::{CurveEnd, Fault, Say, ValueFault};
+use crate::base::fault::{Fault, Say, ValueFault};
 use crate::base::job::Job;
 use crate::base::limits::{REPORTS_OF_A_KIND, REPORTS_TOLD, STAGE_WORK, WORK_OF_A_CURVE, WORK_OF_A_SURFACE};
 use crate::base::tolerance::Tolerance;
@@ -21,6 +21,7 @@ use crate::mesh::cache::reuse::Shelf;
 use crate::mesh::size::remark::Remark;
 use crate::model::Model;
 use crate::model::topology::Named;
+use crate::network::fault::CurveEnd;
 use crate::network::snap::{Hold, SnapEnd, snap};
 use crate::network::{Chain, Network};
 use crate::surface::Surface;

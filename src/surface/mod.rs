@@ -2,6 +2,7 @@
 //!
 //! A room imports only from rooms before it:
 //!
+//! - [`faults`]: what can go wrong, family by family
 //! - [`data`]: jets, domains, kinds, bounds, breaks
 //! - [`rails`]: curves under a parameter, sides, closed boundaries, borders in (u, v)
 //! - [`shapes`]: blended curves, nets, profiles in motion, heights, each by itself
@@ -22,6 +23,7 @@ pub mod blended;
 pub mod closest;
 pub mod core;
 pub mod data;
+pub mod faults;
 pub mod intersect;
 pub mod joined;
 pub mod offset;

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use lofting::base::fault::Share;
+use lofting::io::files::fault::Share;
 use lofting::model::measure;
 
 use super::file::{FRAME, can, file, in_units};

@@ -1,87 +1,34 @@
 //! Everything that can go wrong or deserves a word, with measurements instead of text.
 //!
 //! The kernel returns a [`Fault`]; it knows points, gaps and [`Origin`]s but no source text, names or units.
-//! Each family states its code, sentence, labels and help in [`Describe::describe`], asking a [`Say`] for names and
+//! Each family, declared on the floor it speaks of, states its code, sentence, labels and help in [`Describe::describe`], asking a [`Say`] for names and
 //! quantities; `lang::diag` is the one place that turns the result into a diagnostic under the script.
 //! Warnings and notes are faults as well: the letter of their code tells, and they travel in a `Vec<Fault>` beside
 //! the value.
 
-mod blends;
-mod curves;
-mod cut;
 mod edit;
-mod files;
-mod join;
-mod loops;
-mod mesh;
-mod nets;
-mod network;
-mod no_flow;
-mod scatter;
-mod surface;
-mod surface_shape;
-mod sweep;
+pub mod quantities;
 mod values;
-mod walls;
 
+use std::any::Any;
 use std::fmt;
 use std::mem::discriminant;
 
 use glam::DVec3;
 
-pub use blends::{BlendFault, NoBlend};
-pub use curves::{CurveFault, KnotFault};
-pub use cut::CutFault;
 pub use edit::Edit;
-pub use files::{FileFault, Malformed, Share};
-pub use join::JoinFault;
-pub use loops::{LoopFault, LoopRole};
-pub use mesh::{Close, Cure, LostPart, MeshFault, MeshLimit};
-pub use nets::NetFault;
-pub use network::{CurveEnd, NetworkFault, round_down, round_up};
-pub use no_flow::NoFlow;
-pub use scatter::ScatterFault;
-pub use surface::{Construction, SurfaceFault, Touching};
-pub use sweep::SweepFault;
 pub use values::{LengthRange, ValueFault};
-pub use walls::{WallEdge, WallFault};
 
 use super::origin::Origin;
 
 /// Result of kernel work.
 pub type Result<T> = std::result::Result<T, Fault>;
 
-/// One thing that went wrong or deserves a word; families as in `diagnostics.md`.
-#[derive(Clone, Debug, PartialEq)]
+/// One thing that went wrong or deserves a word. Its family is declared on the floor that it speaks of.
+#[derive(Debug)]
 pub enum Fault {
-    /// Families 2 and 3: a value of the wrong kind or outside its range.
-    Value(Box<ValueFault>),
-    /// Family 4: curves.
-    Curve(Box<CurveFault>),
-    /// Family 5: network and chains.
-    Network(Box<NetworkFault>),
-    /// Family 6: surfaces and model.
-    Surface(Box<SurfaceFault>),
-    /// Family 6: loops of faces and the curves of a loop.
-    Loop(Box<LoopFault>),
-    /// Family 6: surfaces that meet and what they cut.
-    Cut(Box<CutFault>),
-    /// Family 6: sweeps.
-    Sweep(Box<SweepFault>),
-    /// Family 6: nets of profiles and guides.
-    Net(Box<NetFault>),
-    /// Family 6: roundings between surfaces.
-    Blend(Box<BlendFault>),
-    /// Family 6: surfaces through scattered points.
-    Scatter(Box<ScatterFault>),
-    /// Family 7: surfaces that make no one surface.
-    Join(Box<JoinFault>),
-    /// Family 6: offsets and walls.
-    Wall(Box<WallFault>),
-    /// Family 7: meshes.
-    Mesh(Box<MeshFault>),
-    /// Family 8: files.
-    File(Box<FileFault>),
+    /// A fault of a family.
+    Of(Box<dyn Family>),
     /// Stopped from outside (Ctrl-C).
     Interrupted,
 }
@@ -228,56 +175,84 @@ pub trait Describe {
     fn describe(&self, say: &dyn Say) -> Report;
 }
 
-impl Describe for Fault {
-    fn describe(&self, say: &dyn Say) -> Report {
-        match self {
-            Self::Value(f) => f.describe(say),
-            Self::Curve(f) => f.describe(say),
-            Self::Network(f) => f.describe(say),
-            Self::Surface(f) => f.describe(say),
-            Self::Loop(f) => f.describe(say),
-            Self::Cut(f) => f.describe(say),
-            Self::Sweep(f) => f.describe(say),
-            Self::Net(f) => f.describe(say),
-            Self::Blend(f) => f.describe(say),
-            Self::Scatter(f) => f.describe(say),
-            Self::Join(f) => f.describe(say),
-            Self::Wall(f) => f.describe(say),
-            Self::Mesh(f) => f.describe(say),
-            Self::File(f) => f.describe(say),
-            Self::Interrupted => Report::new("E999", "interrupted"),
-        }
+/// A fault of a family, whichever it is; every enumeration that can describe its variants is one.
+pub trait Family: Describe + Any + fmt::Debug + Send + Sync {
+    /// A copy.
+    fn copied(&self) -> Box<dyn Family>;
+    /// Whether both are the same fault with the same measurements.
+    fn equals(&self, other: &dyn Family) -> bool;
+    /// Whether both are the same variant of one family.
+    fn is_like(&self, other: &dyn Family) -> bool;
+}
+
+impl<T: Describe + Any + fmt::Debug + Clone + PartialEq + Send + Sync> Family for T {
+    fn copied(&self) -> Box<dyn Family> {
+        Box::new(self.clone())
+    }
+
+    fn equals(&self, other: &dyn Family) -> bool {
+        (other as &dyn Any).downcast_ref::<T>() == Some(self)
+    }
+
+    fn is_like(&self, other: &dyn Family) -> bool {
+        (other as &dyn Any).downcast_ref::<T>().is_some_and(|other| discriminant(self) == discriminant(other))
     }
 }
 
 impl Fault {
+    /// The fault as one of a family; `None` where it is of another one.
+    pub fn of<T: Family>(&self) -> Option<&T> {
+        match self {
+            Self::Of(fault) => (fault.as_ref() as &dyn Any).downcast_ref(),
+            Self::Interrupted => None,
+        }
+    }
+
+    /// Code, sentence, labels and help.
+    pub fn describe(&self, say: &dyn Say) -> Report {
+        match self {
+            Self::Of(fault) => fault.describe(say),
+            Self::Interrupted => Report::new("E999", "interrupted"),
+        }
+    }
+
     /// Code of `diagnostics.md`.
     pub fn code(&self) -> Code {
         self.describe(&Plain).code
     }
 
-    /// Whether both are the same variant of one family; told without describing either.
+    /// Whether both are the same variant of one family; found without describing either.
     pub fn same_kind(&self, other: &Self) -> bool {
-        fn same<T>(a: &T, b: &T) -> bool {
-            discriminant(a) == discriminant(b)
-        }
         match (self, other) {
-            (Self::Value(a), Self::Value(b)) => same(&**a, &**b),
-            (Self::Curve(a), Self::Curve(b)) => same(&**a, &**b),
-            (Self::Network(a), Self::Network(b)) => same(&**a, &**b),
-            (Self::Surface(a), Self::Surface(b)) => same(&**a, &**b),
-            (Self::Loop(a), Self::Loop(b)) => same(&**a, &**b),
-            (Self::Cut(a), Self::Cut(b)) => same(&**a, &**b),
-            (Self::Sweep(a), Self::Sweep(b)) => same(&**a, &**b),
-            (Self::Net(a), Self::Net(b)) => same(&**a, &**b),
-            (Self::Blend(a), Self::Blend(b)) => same(&**a, &**b),
-            (Self::Scatter(a), Self::Scatter(b)) => same(&**a, &**b),
-            (Self::Join(a), Self::Join(b)) => same(&**a, &**b),
-            (Self::Wall(a), Self::Wall(b)) => same(&**a, &**b),
-            (Self::Mesh(a), Self::Mesh(b)) => same(&**a, &**b),
-            (Self::File(a), Self::File(b)) => same(&**a, &**b),
-            _ => same(self, other),
+            (Self::Of(a), Self::Of(b)) => a.is_like(b.as_ref()),
+            (Self::Interrupted, Self::Interrupted) => true,
+            _ => false,
         }
+    }
+}
+
+impl Clone for Fault {
+    fn clone(&self) -> Self {
+        match self {
+            Self::Of(fault) => Self::Of(fault.copied()),
+            Self::Interrupted => Self::Interrupted,
+        }
+    }
+}
+
+impl PartialEq for Fault {
+    fn eq(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Of(a), Self::Of(b)) => a.equals(b.as_ref()),
+            (Self::Interrupted, Self::Interrupted) => true,
+            _ => false,
+        }
+    }
+}
+
+impl<T: Family> From<T> for Fault {
+    fn from(fault: T) -> Self {
+        Self::Of(Box::new(fault))
     }
 }
 
@@ -288,29 +263,3 @@ impl fmt::Display for Fault {
 }
 
 impl std::error::Error for Fault {}
-
-macro_rules! from_family {
-    ($($variant:ident($family:ty)),+) => { $(
-        impl From<$family> for Fault {
-            fn from(fault: $family) -> Self {
-                Self::$variant(Box::new(fault))
-            }
-        }
-    )+ };
-}
-from_family!(
-    Value(ValueFault),
-    Curve(CurveFault),
-    Network(NetworkFault),
-    Surface(SurfaceFault),
-    Loop(LoopFault),
-    Cut(CutFault),
-    Sweep(SweepFault),
-    Net(NetFault),
-    Blend(BlendFault),
-    Scatter(ScatterFault),
-    Join(JoinFault),
-    Wall(WallFault),
-    Mesh(MeshFault),
-    File(FileFault)
-);

@@ -7,13 +7,14 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use crate::base::fault::{CurveFault, KnotFault, LengthRange, Result, ValueFault};
+use crate::base::fault::{LengthRange, Result, ValueFault};
 use crate::base::limits::COORDINATE;
 use crate::base::math;
 use crate::base::origin::Origin;
 use crate::base::tolerance::{EPSILON, NUDGE, PARALLEL};
 use crate::geometry::curves::composite::Composite;
 use crate::geometry::curves::curve::{Curve, Kind, Shape};
+use crate::geometry::data::fault::{CurveFault, KnotFault};
 use crate::geometry::shapes::arc::EllipticArc;
 use crate::geometry::shapes::helix::Helix;
 use crate::geometry::shapes::nurbs::{MAX_DEGREE, Nurbs, weighted};

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
-use crate::base::fault::{CurveFault, LengthRange, Result, ValueFault};
+use crate::base::fault::{LengthRange, Result, ValueFault};
 use crate::base::math;
 use crate::base::origin::Origin;
 use crate::base::tolerance::{EPSILON, NEAREST, NUDGE, ROUNDING_SHARE};
@@ -15,6 +15,7 @@ use crate::geometry::construct::build::{all_different, composite, enough, finite
 use crate::geometry::construct::offset_build::{height_over, smooth_pieces};
 use crate::geometry::curves::composite::Composite;
 use crate::geometry::curves::curve::{Curve, Kind, Shape};
+use crate::geometry::data::fault::CurveFault;
 use crate::geometry::shapes::arc::EllipticArc;
 
 /// Steps of the radius from nothing to the wanted one, where nothing hinders.

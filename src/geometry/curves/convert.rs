@@ -1,8 +1,9 @@
 //! Curves as rational B-splines.
 
-use crate::base::fault::{CurveFault, Result};
+use crate::base::fault::Result;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::curves::curve::{Curve, Shape};
+use crate::geometry::data::fault::CurveFault;
 use crate::geometry::shapes::nurbs::Nurbs;
 
 /// Pieces of an approximation at most.

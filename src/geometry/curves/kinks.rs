@@ -2,9 +2,10 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{CurveFault, Result};
+use crate::base::fault::Result;
 use crate::base::tolerance::{CUSP, NUDGE, Tolerance};
 use crate::geometry::curves::curve::{Curve, Kind, Shape};
+use crate::geometry::data::fault::CurveFault;
 
 impl Curve {
     /// Directions (any length) in which the curve arrives at and leaves a parameter; at an end both are the same.

@@ -1,4 +1,5 @@
 //! What all curves have in common: points with derivatives, and motions.
 
+pub mod fault;
 pub mod jet;
 pub mod motion;

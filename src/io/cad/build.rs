@@ -1,6 +1,5 @@
 //! Faces as surface values.
 
-use crate::base::fault::{Malformed, Share};
 use crate::base::job;
 use crate::base::origin::Origin;
 use crate::base::text::decimals;
@@ -10,6 +9,7 @@ use crate::io::cad::damage::{Damage, damage};
 use crate::io::cad::face::{Face, least_area};
 use crate::io::cad::healing::{Repair, Rule};
 use crate::io::cad::part::{Figure, Part, Unusable};
+use crate::io::files::fault::{Malformed, Share};
 use crate::model::measure;
 use crate::network::Chain;
 use crate::surface::{Doubt, Ground, Outlined, Side, Surface, outlined, trim};

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{Describe, Fault, Say};
+use crate::base::fault::{Fault, Say};
 use crate::base::origin::Origin;
 use crate::base::text;
 

@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 
-use crate::base::fault::Malformed;
 use crate::base::origin::Origin;
 use crate::geometry::Curve;
 use crate::io::cad::assembly::Node;
 use crate::io::cad::face::Face;
 use crate::io::cad::healing::{Off, Repair};
+use crate::io::files::fault::Malformed;
 use crate::surface::Surface;
 
 /// What a reader needs to know of the model.

@@ -1,10 +1,10 @@
 //! Areas, volumes and centroids that a file states, against those of what came in.
 
 use crate::base::bbox::Box3;
-use crate::base::fault::Malformed;
 use crate::base::job;
 use crate::base::tolerance::STATED;
 use crate::io::cad::part::{Figure, Part, Stated};
+use crate::io::files::fault::Malformed;
 use crate::model::measure;
 use crate::surface::Surface;
 

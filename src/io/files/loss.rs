@@ -1,7 +1,7 @@
 //! What a format cannot hold, and the warnings for it.
 
-use crate::base::fault::FileFault;
 use crate::base::origin::Origin;
+use crate::io::files::fault::FileFault;
 
 /// What a format could not hold as it is.
 #[derive(Clone, Debug, PartialEq, Eq)]

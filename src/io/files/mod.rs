@@ -3,6 +3,7 @@
 
 pub mod access;
 pub(crate) mod block_writer;
+pub mod fault;
 pub mod loss;
 pub(crate) mod names;
 pub(crate) mod romanize;

@@ -1,8 +1,8 @@
 //! The format that the ending of a path chooses.
 
-use crate::base::fault::FileFault;
 use crate::base::origin::Origin;
 use crate::io::curve_files::polylines::CurveFormat;
+use crate::io::files::fault::FileFault;
 use crate::io::formats::endings::{Sort, ending_for, misfit};
 use crate::io::formats::list::{CURVE_FORMATS, FORMATS};
 use crate::io::mesh_files::format::Format;

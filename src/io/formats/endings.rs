@@ -1,7 +1,7 @@
 //! Endings of files: what sorts of things each one holds, and what to say where something does not go into it.
 
-use crate::base::fault::FileFault;
 use crate::base::origin::Origin;
+use crate::io::files::fault::FileFault;
 use crate::io::formats::list::{CURVE_FORMATS, FORMATS};
 
 /// What a script may put into a file.

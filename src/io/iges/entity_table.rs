@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 
 use glam::DAffine3;
 
-use crate::base::fault::Malformed;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::Curve;
 use crate::io::cad::damage::{Damage, damage};
 use crate::io::cad::part::Options;
+use crate::io::files::fault::Malformed;
 use crate::io::iges::entity_data::{Data, Decoded, Pointer};
 use crate::io::iges::entity_decode::decode;
 use crate::io::iges::params::Reader;

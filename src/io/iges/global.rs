@@ -1,6 +1,6 @@
 //! The global section: separators, unit, scale.
 
-use crate::base::fault::Malformed;
+use crate::io::files::fault::Malformed;
 use crate::io::iges::lines::{CONTENT, Line, Sections};
 use crate::io::iges::params::{Separators, Token, real, shown, tokens};
 

@@ -3,7 +3,7 @@
 //! Columns 1–72 are content, column 73 the letter of the section, columns 74–80 a number. Lines that keep these columns only
 //! roughly (too long, too short, shifted, without letter) are read where it is clear what they mean, with a warning each.
 
-use crate::base::fault::Malformed;
+use crate::io::files::fault::Malformed;
 
 /// Columns of content.
 pub const CONTENT: usize = 72;

@@ -5,9 +5,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use glam::DVec3;
 
 use crate::base::bbox::Box3;
-use crate::base::fault::Malformed;
 use crate::base::job;
 use crate::io::cad::part::Options;
+use crate::io::files::fault::Malformed;
 use crate::io::iges::entity_data::{Data, Pointer};
 use crate::io::iges::entity_table::Book;
 use crate::io::iges::records;

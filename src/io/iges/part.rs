@@ -7,7 +7,6 @@ use std::collections::{BTreeMap, BTreeSet};
 use glam::DVec3;
 
 use crate::base::bbox::Box3;
-use crate::base::fault::Malformed;
 use crate::base::tolerance::Tolerance;
 use crate::base::{job, limits};
 use crate::io::cad::base_surface::Base;
@@ -15,6 +14,7 @@ use crate::io::cad::damage::Damage;
 use crate::io::cad::face::Face;
 use crate::io::cad::face_loops::FaceLoops;
 use crate::io::cad::part::{Group, Item, Names, Part, Place as Made, Shades, Unusable};
+use crate::io::files::fault::Malformed;
 use crate::io::iges::curves::Place;
 use crate::io::iges::entity_data::{Data, Pointer};
 use crate::io::iges::entity_table::{Book, NESTED};

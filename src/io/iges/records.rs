@@ -6,7 +6,7 @@
 use std::cell::Cell;
 use std::collections::BTreeMap;
 
-use crate::base::fault::Malformed;
+use crate::io::files::fault::Malformed;
 use crate::io::iges::global::{self, Global};
 use crate::io::iges::lines::{self, DATA, Line, number_of};
 use crate::io::iges::params::{Tokens, tokens};

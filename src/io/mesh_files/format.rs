@@ -2,8 +2,9 @@
 
 use std::io::{self, Write};
 
-use crate::base::fault::{Edit, FileFault};
+use crate::base::fault::Edit;
 use crate::base::origin::Origin;
+use crate::io::files::fault::FileFault;
 use crate::io::files::loss::Loss;
 use crate::io::mesh_files::deck::{Deck, Encoding, Options};
 use crate::io::mesh_files::element_shape::Shape;

@@ -7,11 +7,11 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 
-use crate::base::fault::Malformed;
 use crate::base::math::unit;
 use crate::base::text::{parse_real, push_count, push_real};
 use crate::base::triangulate::{PolygonFault, newell, polygon};
 use crate::base::{job, limits};
+use crate::io::files::fault::Malformed;
 use crate::io::mesh_files::weld::weld;
 use crate::mesh::{FaceRange, Group, Mesh};
 

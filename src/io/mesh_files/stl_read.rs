@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
-use crate::base::fault::Malformed;
 use crate::base::job;
 use crate::base::text::parse_real;
+use crate::io::files::fault::Malformed;
 use crate::io::mesh_files::obj_read::group_of;
 use crate::io::mesh_files::weld::weld;
 use crate::io::tables::text::decode;

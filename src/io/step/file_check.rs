@@ -1,6 +1,6 @@
 //! Files that are called STEP and are something else, or are written in letters of two bytes.
 
-use crate::base::fault::Malformed;
+use crate::io::files::fault::Malformed;
 
 /// Bytes looked at.
 const HEAD: usize = 4096;

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 
 use crate::base::bbox::Box3;
-use crate::base::fault::Malformed;
 use crate::io::cad::part::Options;
+use crate::io::files::fault::Malformed;
 use crate::io::step::assembly::{Assembly, assembly};
 use crate::io::step::part21;
 use crate::io::step::reader::Step;

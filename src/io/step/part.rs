@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 
-use crate::base::fault::Malformed;
 use crate::base::tolerance::Tolerance;
 use crate::base::{job, limits};
 use crate::geometry::Motion;
 use crate::io::cad::damage::Damage;
 use crate::io::cad::part::{Figure, Group, Item, Names, Part, Place, Shades, Stated};
+use crate::io::files::fault::Malformed;
 use crate::io::step::assembly::{Assembly, Instance, Placed};
 use crate::io::step::items::{Bundle, Item as Shape, Sort, Unread};
 use crate::io::step::open::Opened;

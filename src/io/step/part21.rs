@@ -5,8 +5,8 @@
 
 use std::cell::OnceCell;
 
-use crate::base::fault::Malformed;
 use crate::base::job;
+use crate::io::files::fault::Malformed;
 use crate::io::step::line_index::Places;
 use crate::io::step::records::{File, Kind, Piece, Record, Token};
 

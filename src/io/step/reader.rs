@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 
 use glam::{DMat3, DVec3};
 
-use crate::base::fault::Malformed;
 use crate::base::origin::Origin;
 use crate::base::tolerance::{PARALLEL, Tolerance};
 use crate::base::{limits, math};
@@ -12,6 +11,7 @@ use crate::geometry::{Curve, Motion};
 use crate::io::cad::base_surface::Base;
 use crate::io::cad::damage::{Damage, damage};
 use crate::io::cad::part::{Options, Unusable};
+use crate::io::files::fault::Malformed;
 use crate::io::step::records::File;
 use crate::io::step::units::Units;
 

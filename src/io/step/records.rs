@@ -2,8 +2,8 @@
 
 use std::cell::OnceCell;
 
-use crate::base::fault::Malformed;
 use crate::base::job;
+use crate::io::files::fault::Malformed;
 use crate::io::step::line_index::{Lines, Places};
 
 /// What a token is.

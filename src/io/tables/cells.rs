@@ -1,8 +1,8 @@
 //! Cells, columns and rows of a table from their text.
 
-use crate::base::fault::Malformed;
 use crate::base::limits;
 use crate::base::text::parse_real;
+use crate::io::files::fault::Malformed;
 use crate::io::tables::table::{Cell, Table};
 
 /// One cell; `unit` is its column's.

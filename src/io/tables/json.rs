@@ -7,9 +7,9 @@ use std::io::{self, Write};
 
 use serde::de::{self, DeserializeSeed, Deserializer, MapAccess, SeqAccess, Visitor};
 
-use crate::base::fault::Malformed;
 use crate::base::limits;
 use crate::base::text::push_real;
+use crate::io::files::fault::Malformed;
 use crate::io::tables::text::decode;
 
 /// A JSON value.

@@ -1,7 +1,7 @@
 //! Reads tables: csv (comma, semicolon or tab), dat and txt (blanks).
 
-use crate::base::fault::Malformed;
 use crate::base::job;
+use crate::io::files::fault::Malformed;
 use crate::io::tables::cells::{Rows, is_number};
 use crate::io::tables::table::{Layout, Reading, Table};
 use crate::io::tables::text::{decode, separator, without_comments};

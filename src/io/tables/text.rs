@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use crate::base::fault::Malformed;
+use crate::io::files::fault::Malformed;
 
 /// The text of a data file without its byte order mark, or where it is no text.
 pub(crate) fn decode(bytes: &[u8]) -> Result<&str, Malformed> {

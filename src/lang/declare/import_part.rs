@@ -5,10 +5,10 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::base::bbox::Box3;
-use crate::base::fault::{FileFault, Malformed};
 use crate::base::tolerance::Tolerance;
 use crate::io::cad::healing::{Repair, Rule};
 use crate::io::cad::part::{Group, Options, Part, Unusable};
+use crate::io::files::fault::{FileFault, Malformed};
 use crate::io::{iges, step};
 use crate::lang::declare::imports::File;
 use crate::lang::eval::context::Cx;

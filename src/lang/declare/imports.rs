@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use crate::base::fault::{FileFault, Malformed};
 use crate::base::limits;
 use crate::base::origin::Origin;
+use crate::io::files::fault::{FileFault, Malformed};
 use crate::io::tables::table::{Layout, Reading};
 use crate::io::{self, Cell, Json, Obj};
 use crate::lang::eval::bind::Signature;

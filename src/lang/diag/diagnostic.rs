@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use crate::base::fault::{Code, Describe, Edit, Fault, Report, Say, Severity, Subject};
+use crate::base::fault::{Code, Edit, Fault, Report, Say, Severity, Subject};
 use crate::base::limits::REPORTS_TOLD;
 use crate::lang::diag::span::Span;
 

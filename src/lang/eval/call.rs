@@ -136,7 +136,7 @@ impl Cx<'_> {
                 let blame = self.blame(code, id, builtin, before.is_some(), args);
                 let mut diagnostic = self.locate(&fault, code, call_name(code, id), &blame);
                 self.advise(&fault, (code, id), &blame, &mut diagnostic);
-                let of_value = matches!(fault, crate::base::fault::Fault::Value(_));
+                let of_value = fault.of::<ValueFault>().is_some();
                 let diagnostic = self.by_place((code, call_name(code, id)), (diagnostic, of_value), (builtin, before.as_ref(), args));
                 let few = diagnostic.code.0 == "E402";
                 self.sink.reports.push(diagnostic);

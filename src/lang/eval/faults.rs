@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{Describe, Fault, Say, Subject};
+use crate::base::fault::{Fault, Say, Subject};
 use crate::base::origin::Origin;
 use crate::lang::diag::diagnostic::{Diagnostic, FileId, Label};
 use crate::lang::diag::span::Span;

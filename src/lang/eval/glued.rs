@@ -1,8 +1,9 @@
 //! Shells glued once a run, whoever asks for what they measure.
 
+use crate::model::fault::ModelFault;
 use std::sync::Arc;
 
-use crate::base::fault::{Fault, SurfaceFault};
+use crate::base::fault::Fault;
 use crate::base::work::Once;
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
@@ -85,7 +86,7 @@ impl Cx<'_> {
         if !built.closed {
             let origin = |id: &SurfaceId| glued.scene.model.surfaces[id.index()].surface.origin();
             let free = built.free.iter().map(|(id, at, length)| (origin(id), *at, *length)).collect();
-            return Err(SurfaceFault::ShellNotClosed { shell: shell.origin, wanted: "volume", free }.into());
+            return Err(ModelFault::ShellNotClosed { shell: shell.origin, wanted: "volume", free }.into());
         }
         Ok(glued.solid())
     }

@@ -1,6 +1,6 @@
 //! Why an evaluation gives no value.
 
-use crate::base::fault::Fault;
+use crate::base::fault::{Family, Fault};
 use crate::lang::values::value::ModuleId;
 
 /// Why an evaluation gives no value.
@@ -26,13 +26,8 @@ impl From<Fault> for Halt {
     }
 }
 
-macro_rules! stop_from {
-    ($($family:ident),+) => { $(
-        impl From<crate::base::fault::$family> for Halt {
-            fn from(fault: crate::base::fault::$family) -> Self {
-                Self::Fault(fault.into())
-            }
-        }
-    )+ };
+impl<T: Family> From<T> for Halt {
+    fn from(fault: T) -> Self {
+        Self::Fault(fault.into())
+    }
 }
-stop_from!(ValueFault, CurveFault, NetworkFault, SurfaceFault, SweepFault, LoopFault, MeshFault, FileFault);

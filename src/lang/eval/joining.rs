@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{CurveEnd, Edit, Fault, NetworkFault, Say};
+use crate::base::fault::{Edit, Fault, Say};
 use crate::base::tolerance::Tolerance;
 use crate::lang::diag::diagnostic::Fix;
 use crate::lang::diag::diagnostic::{Diagnostic, FileId};
@@ -17,6 +17,7 @@ use crate::lang::syntax::ast::{Expr, ExprId};
 use crate::lang::values::origins::NO_MEMBER;
 use crate::lang::values::value::{ModuleId, Value};
 use crate::network::Chain;
+use crate::network::fault::{CurveEnd, NetworkFault};
 
 /// Most characters of a call that is typed out in a help.
 const SHOWN: usize = 120;
@@ -34,10 +35,10 @@ struct Filler {
 impl Cx<'_> {
     /// Puts the curve that fills a gap into the help of E502 and E503, where the script declares one.
     pub(crate) fn advise(&self, fault: &Fault, (code, id): (Code<'_>, ExprId), blame: &Blame, diagnostic: &mut Diagnostic) {
-        let (Some(tolerance), Fault::Network(told)) = (self.tolerance, fault) else { return };
-        let (a, b, ordered) = match told.as_ref() {
-            NetworkFault::BoundaryOpen { a, b, .. } => (a, b, false),
-            NetworkFault::ChainBroken { a, b, reversed_fits: false, snaps: false, .. } => (a, b, true),
+        let Some(tolerance) = self.tolerance else { return };
+        let (a, b, ordered) = match fault.of() {
+            Some(NetworkFault::BoundaryOpen { a, b, .. }) => (a, b, false),
+            Some(NetworkFault::ChainBroken { a, b, reversed_fits: false, snaps: false, .. }) => (a, b, true),
             _ => return,
         };
         let Some(filler) = self.filler(code.module, (a, b), &tolerance) else { return };

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use crate::base::fault::FileFault;
 use crate::base::limits;
 use crate::base::origin::Origin;
 use crate::io::FileError;
+use crate::io::files::fault::FileFault;
 use crate::lang::diag::diagnostic::Diagnostic;
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;

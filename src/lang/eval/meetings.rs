@@ -1,6 +1,6 @@
 //! Where things meet, and the runs of curves between such places: `a & b` and `c[A..B]`.
 
-use crate::base::fault::{CutFault, Fault, ValueFault};
+use crate::base::fault::{Fault, ValueFault};
 use crate::base::origin::Origin;
 use crate::lang::eval::bind::Blame;
 use crate::lang::eval::context::Cx;
@@ -14,6 +14,7 @@ use crate::network::Chain;
 use crate::network::meet;
 use crate::surface::Surface;
 use crate::surface::core::plane;
+use crate::surface::faults::CutFault;
 use crate::surface::intersect::{with_curve, with_surfaces};
 
 /// The one place where two things meet; E507, E508, E509 name the candidates.

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::base::fault::Malformed;
 use crate::base::origin::Origin;
+use crate::io::files::fault::Malformed;
 use crate::lang::values::types::{FromValue, Ty};
 use crate::lang::values::value::{BodyKind, ModuleId, ShellValue, Value};
 use crate::lang::words::plural::counted;

@@ -5,9 +5,10 @@ use glam::DVec3;
 
 use crate::base::bytes::{Bytes, Plain, Put};
 use crate::base::digest::{StableHash, StableHasher};
-use crate::base::fault::{Fault, LostPart, MeshFault};
+use crate::base::fault::Fault;
 use crate::base::origin::Origin;
 use crate::mesh::border::layout::{Face, Layout};
+use crate::mesh::request::fault::{LostPart, MeshFault};
 use crate::mesh::request::input::Input;
 use crate::model::{PatchId, SurfaceId};
 use crate::surface::{Domain, Side};

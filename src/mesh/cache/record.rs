@@ -1,7 +1,6 @@
 //! Meshes as bytes and back. What comes back is either a sound mesh or nothing.
 
 use crate::base::bytes::{Bytes, Plain, Put};
-use crate::base::fault::Cure;
 use crate::mesh::border::touch::{Kind, Touch};
 use crate::mesh::data::face_geometry::{FaceGeometries, FaceGeometry, FaceNodes, Free};
 use crate::mesh::data::mesh::{FaceRange, Group, Mesh};
@@ -9,6 +8,7 @@ use crate::mesh::mapped::grid::{self, Grid};
 use crate::mesh::mapped::trilateral::{Blocks, Lattice, LatticeIds};
 use crate::mesh::report::built::Built;
 use crate::mesh::report::explain::Explanation;
+use crate::mesh::request::fault::Cure;
 use crate::mesh::size::remark::Remark;
 use crate::surface::Surface;
 

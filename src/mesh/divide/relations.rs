@@ -1,12 +1,13 @@
 //! The faces as equations between counts, and what their contradictions are called.
 
-use crate::base::fault::{Fault, MeshFault, MeshLimit, Result};
+use crate::base::fault::{Fault, Result};
 use crate::base::origin::Origin;
 use crate::base::tolerance::WHOLE_NUMBER;
 use crate::mesh::border::layout::{Face, Layout};
 use crate::mesh::divide::row_demand::RowDemand;
 use crate::mesh::divide::strips::{Conflict, Relation, Stretch};
 use crate::mesh::divide::verdict::Verdict;
+use crate::mesh::request::fault::{MeshFault, MeshLimit};
 use crate::mesh::request::input::Input;
 use crate::mesh::request::methods::Elements;
 use crate::mesh::size::sizing::{Decision, MOST, Sizing};

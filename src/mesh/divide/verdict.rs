@@ -3,7 +3,6 @@
 use glam::DVec3;
 
 use crate::base::digest::{StableHash, StableHasher};
-use crate::base::fault::MeshLimit;
 use crate::base::math::widest_angle;
 use crate::base::par;
 use crate::base::tolerance::WHOLE_NUMBER;
@@ -15,6 +14,7 @@ use crate::mesh::deviation::certify::{self, Proof};
 use crate::mesh::deviation::measure;
 use crate::mesh::divide::row_demand::{RowDemand, SIZE_ROOM};
 use crate::mesh::mapped::grid::Grid;
+use crate::mesh::request::fault::MeshLimit;
 use crate::mesh::request::input::Input;
 use crate::mesh::request::limits::Limits;
 use crate::mesh::request::recall::RecallFace;

@@ -1,12 +1,13 @@
 //! Mapped faces ready to be filled: their grids or lattices, with the ids of their border nodes.
 
-use crate::base::fault::{MeshFault, Result};
+use crate::base::fault::Result;
 use crate::mesh::border::layout::{Face, Layout, middle, side_parameters};
 use crate::mesh::border::nodes::{Nodes, line};
 use crate::mesh::data::face_geometry::{FaceGeometry, FaceNodes};
 use crate::mesh::data::face_mesh::FaceMesh;
 use crate::mesh::mapped::grid::{self, Grid};
 use crate::mesh::mapped::trilateral::{Blocks, Lattice, LatticeIds};
+use crate::mesh::request::fault::MeshFault;
 use crate::mesh::request::input::Input;
 use crate::mesh::request::methods::Elements;
 

@@ -4,9 +4,10 @@
 //! Faces that are made freely of triangles divide such an edge (`face/twins.rs`). A mapped one of triangles takes the other diagonal
 //! of the cell; where a face has a single row of cells between two borders it gets more rows.
 
+use crate::model::fault::ModelFault;
 use std::collections::BTreeMap;
 
-use crate::base::fault::{Fault, MeshFault, SurfaceFault};
+use crate::base::fault::Fault;
 use crate::base::par;
 use crate::mesh::border::inside;
 use crate::mesh::border::layout::{Layout, Uneven};
@@ -16,6 +17,7 @@ use crate::mesh::data::face_mesh::{FaceMesh, element_ranges};
 use crate::mesh::data::mesh::Mesh;
 use crate::mesh::divide::verdict::Verdict;
 use crate::mesh::face::twins::{Edge, is_upright, ordered, twins};
+use crate::mesh::request::fault::MeshFault;
 use crate::mesh::request::input::Input;
 use crate::mesh::request::limits::Limits;
 use crate::mesh::request::methods::{Elements, Method};
@@ -160,7 +162,7 @@ pub fn fault(input: &Input, layout: &Layout, mesh: &Mesh, (edge, faces): &Togeth
         if [0.25, 0.5, 0.75].into_iter().all(is_on_both) {
             let names = (surface(first).name.clone(), surface(second).name.clone());
             let (a, b) = (surface(first).surface.origin(), surface(second).surface.origin());
-            return SurfaceFault::ImprintOverlap { imprint: *imprint, a, b, names, at: one.0.at(p.midpoint(q)).point }.into();
+            return ModelFault::ImprintOverlap { imprint: *imprint, a, b, names, at: one.0.at(p.midpoint(q)).point }.into();
         }
     }
     let [a, b] = [first, second].map(|f| surface(f).surface.origin());

@@ -4,12 +4,13 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec3;
 
-use crate::base::fault::{MeshFault, Result};
+use crate::base::fault::Result;
 use crate::base::job;
 use crate::mesh::border::beside;
 use crate::mesh::border::layout::Layout;
 use crate::mesh::border::nodes::Nodes;
 use crate::mesh::data::mesh::{Group, Mesh};
+use crate::mesh::request::fault::MeshFault;
 use crate::mesh::request::input::Input;
 use crate::mesh::request::plan::{GroupRequest, Target};
 use crate::model::{PatchId, SurfaceId};

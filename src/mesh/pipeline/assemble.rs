@@ -1,6 +1,6 @@
 //! The mesh of a set of faces that share their borders.
 
-use crate::base::fault::{Fault, MeshFault, Result};
+use crate::base::fault::{Fault, Result};
 use crate::base::job::Job;
 use crate::mesh::border::inside;
 use crate::mesh::border::layout::{Face, Layout, Uneven};
@@ -13,6 +13,7 @@ use crate::mesh::output::{lines, second_order};
 use crate::mesh::pipeline::attempt::{Done, attempt};
 use crate::mesh::report::border_error;
 use crate::mesh::report::explain::Explanation;
+use crate::mesh::request::fault::MeshFault;
 use crate::mesh::request::input::Input;
 use crate::mesh::size::sizing::Sizing;
 
@@ -63,8 +64,7 @@ fn keep_maps(layout: &mut Layout) -> bool {
 /// Halves the steps of the borders of faces made with as few triangles as may be that do not keep a limit: what stands beside a
 /// long step of a border leans over the surface, however small it is. Whether there were any.
 fn halve_leaning(input: &Input, layout: &mut Layout, fault: &Fault) -> bool {
-    let Fault::Mesh(fault) = fault else { return false };
-    let MeshFault::NotReached { surface, .. } = &**fault else { return false };
+    let Some(MeshFault::NotReached { surface, .. }) = fault.of() else { return false };
     let of = |face: &Face| input.model.surfaces[face.surface.index()].surface.origin();
     let mut any = false;
     for face in layout.faces.iter_mut().filter(|face| of(face) == *surface) {

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use glam::{DVec2, DVec3};
 
-use crate::base::fault::{MeshFault, MeshLimit, Result};
+use crate::base::fault::Result;
 use crate::base::job::{self, Job};
 use crate::mesh::chart::halves::{Halves, NONE};
 use crate::mesh::chart::parametric_surface::{ParametricSurface, SizeField, UniformSize};
@@ -16,6 +16,7 @@ use crate::mesh::quad::pair::{Alone, pair};
 use crate::mesh::quad::smooth::Smoother;
 use crate::mesh::quad::split::split;
 use crate::mesh::quad::swap::Swapper;
+use crate::mesh::request::fault::{MeshFault, MeshLimit};
 use crate::mesh::request::methods::{Elements, Method};
 use crate::mesh::request::size_requests::floor_keeps;
 use crate::mesh::request::work::allow;

@@ -5,7 +5,6 @@ use std::f64::consts::FRAC_PI_6;
 
 use glam::DVec3;
 
-use crate::base::fault::Cure;
 use crate::base::math::angle_between;
 use crate::base::text::real;
 use crate::base::{job, par};
@@ -14,6 +13,7 @@ use crate::mesh::chart::face_input::FaceInput;
 use crate::mesh::data::face_mesh::{FaceMesh, element_ranges};
 use crate::mesh::data::mesh::Mesh;
 use crate::mesh::face::foresee::{self, Foreseen, SHARP};
+use crate::mesh::request::fault::Cure;
 use crate::mesh::request::methods::Method;
 use crate::mesh::request::sources::distance_to_segment;
 use crate::mesh::size::remark::Remark;

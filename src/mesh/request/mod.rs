@@ -1,6 +1,7 @@
 //! What is asked of a mesh, and what all rooms after this one may read: the plan with its model, limits, sources of sizes.
 
 pub mod decider;
+pub mod fault;
 pub mod input;
 pub mod limits;
 pub mod methods;

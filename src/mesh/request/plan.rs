@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 
 use crate::base::bbox::Box3;
-use crate::base::fault::MeshLimit;
 use crate::base::limits::MESH_ELEMENTS;
 use crate::base::origin::Origin;
+use crate::mesh::request::fault::MeshLimit;
 use crate::mesh::request::settings::{MeshSettings, RuleSettings};
 use crate::model::imprint::Imprint;
 use crate::model::{Course, PatchId, SurfaceId};

@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{Fault, MeshFault, MeshLimit, Result};
+use crate::base::fault::{Fault, Result};
+use crate::mesh::request::fault::{MeshFault, MeshLimit};
 use crate::mesh::request::input::Input;
 use crate::mesh::request::plan::{Place, Refine};
 use crate::mesh::request::sources::{Body, Least, Source, Sources, pieces};

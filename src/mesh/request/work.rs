@@ -1,9 +1,10 @@
 //! How large a mesh may become and how much work it may take.
 
-use crate::base::fault::{Fault, MeshFault};
+use crate::base::fault::Fault;
 use crate::base::limits::{MESH_WORK, WORK_OF_AN_ELEMENT};
 use crate::base::origin::Origin;
 use crate::base::work;
+use crate::mesh::request::fault::MeshFault;
 use crate::mesh::request::input::Input;
 use crate::mesh::request::plan::Plan;
 use crate::surface::Surface;

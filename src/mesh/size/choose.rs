@@ -1,8 +1,9 @@
 //! How each face is made: mapped where it can be and no other method is written, else freely.
 
-use crate::base::fault::{MeshFault, Result};
+use crate::base::fault::Result;
 use crate::base::text::real;
 use crate::mesh::border::layout::{Face, Layout, Uneven, middle};
+use crate::mesh::request::fault::MeshFault;
 use crate::mesh::request::input::Input;
 use crate::mesh::request::methods::{Elements, Method};
 use crate::surface::{Domain, Surface};

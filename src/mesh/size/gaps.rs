@@ -5,10 +5,11 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{MeshFault, Result};
+use crate::base::fault::Result;
 use crate::base::par;
 use crate::mesh::border::layout::{Face, Layout};
 use crate::mesh::chart::face_border::places;
+use crate::mesh::request::fault::MeshFault;
 use crate::mesh::request::input::Input;
 use crate::mesh::request::limits::Limits;
 use crate::model::segments::SegmentUse;

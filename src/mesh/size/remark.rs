@@ -1,13 +1,16 @@
 //! What is to be said about the rules of a mesh.
 
+use crate::model::fault::ModelFault;
 use glam::DVec3;
 
-use crate::base::fault::{Cure, Fault, MeshFault, SurfaceFault, Touching};
+use crate::base::fault::Fault;
 use crate::base::origin::Origin;
 use crate::mesh::border::lost::Lost;
 use crate::mesh::border::touch::{Kind, Touch};
+use crate::mesh::request::fault::{Cure, MeshFault};
 use crate::mesh::request::input::Input;
 use crate::mesh::size::sizing::{FREE_ONLY, KEYS, free_only_origin};
+use crate::model::fault::Touching;
 
 /// What is to be said about a mesh and the rules of its plan, by their places in it.
 #[derive(Clone, Debug, PartialEq)]
@@ -89,7 +92,7 @@ impl Remark {
                 };
                 let names = names.clone();
                 let imprint = plan.imprint.is_some();
-                SurfaceFault::FacesTouch { within: plan.origin, a: surface(*a), b: surface(*b), names, how, at: *at, imprint }.into()
+                ModelFault::FacesTouch { within: plan.origin, a: surface(*a), b: surface(*b), names, how, at: *at, imprint }.into()
             }
             Self::Lost(lost) => lost.fault(input),
             Self::Unused { rule, why } => MeshFault::RuleUnused { rule: origin(*rule), why: why.clone() }.into(),

@@ -3,7 +3,7 @@
 use std::f64::consts::FRAC_PI_3;
 
 use crate::base::digest::StableHasher;
-use crate::base::fault::{MeshFault, Result};
+use crate::base::fault::Result;
 use crate::base::limits::{MESH_ELEMENTS, MESH_STEPS};
 use crate::base::origin::Origin;
 use crate::base::par;
@@ -14,6 +14,7 @@ use crate::mesh::border::layout::{Face, Layout};
 use crate::mesh::data::face_mesh::FaceMesh;
 use crate::mesh::deviation::curve::{least_steps, wanted_steps};
 use crate::mesh::request::decider::Why;
+use crate::mesh::request::fault::MeshFault;
 use crate::mesh::request::input::Input;
 use crate::mesh::request::limits::Limits;
 use crate::mesh::request::methods::Elements;

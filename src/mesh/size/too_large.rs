@@ -1,12 +1,13 @@
 //! What a mesh would be too large for, told before anything is divided or allocated for it.
 
-use crate::base::fault::{Fault, MeshFault, Result};
+use crate::base::fault::{Fault, Result};
 use crate::base::limits::MESH_STEPS;
 use crate::base::origin::Origin;
 use crate::base::tolerance::WHOLE_NUMBER;
 use crate::mesh::border::counts::steps;
 use crate::mesh::border::layout::Layout;
 use crate::mesh::deviation::curve::least_steps;
+use crate::mesh::request::fault::MeshFault;
 use crate::mesh::request::input::Input;
 use crate::mesh::request::limits::Limits;
 use crate::mesh::request::work::too_many;

@@ -2,9 +2,10 @@
 
 use glam::DVec2;
 
-use crate::base::fault::{MeshFault, MeshLimit, Result};
+use crate::base::fault::Result;
 use crate::base::job::Job;
 use crate::mesh::chart::parametric_surface::ParametricSurface;
+use crate::mesh::request::fault::{MeshFault, MeshLimit};
 use crate::mesh::request::limits::Limits;
 use crate::mesh::request::size_requests::floor_keeps;
 use crate::mesh::request::sources::Sources;

@@ -6,7 +6,7 @@ use std::cell::RefCell;
 use glam::{DVec2, DVec3};
 
 use crate::base::bbox::Box3;
-use crate::base::fault::{MeshFault, MeshLimit, Result};
+use crate::base::fault::Result;
 use crate::base::job::Job;
 use crate::mesh::border::layout::Face;
 use crate::mesh::chart::affine::Chart;
@@ -15,6 +15,7 @@ use crate::mesh::chart::outline::Outline;
 use crate::mesh::chart::parametric_surface::{SizeField, UniformSize};
 use crate::mesh::deviation::{poles, triangle};
 use crate::mesh::request::decider::{Decider, Tally, Why};
+use crate::mesh::request::fault::{MeshFault, MeshLimit};
 use crate::mesh::request::limits::Limits;
 use crate::mesh::request::methods::{Elements, Method};
 use crate::mesh::request::size_requests::floor_keeps;

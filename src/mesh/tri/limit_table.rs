@@ -4,7 +4,6 @@ use std::cell::RefCell;
 
 use glam::{DVec2, DVec3};
 
-use crate::base::fault::MeshLimit;
 use crate::base::math::angle_between;
 use crate::base::par;
 use crate::base::tolerance::PARALLEL;
@@ -12,6 +11,7 @@ use crate::mesh::chart::affine::Chart;
 use crate::mesh::chart::parametric_surface::ParametricSurface;
 use crate::mesh::deviation::poles::{self, from_pole, under};
 use crate::mesh::deviation::{sides, triangle};
+use crate::mesh::request::fault::MeshLimit;
 use crate::mesh::request::limits::Limits;
 use crate::mesh::size::gaps;
 use crate::mesh::tri::triangulation::Triangulation;

@@ -2,12 +2,13 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{Fault, MeshFault};
+use crate::base::fault::Fault;
 use crate::base::origin::Origin;
 use crate::base::triangulate_points::PointsFault;
 use crate::mesh::border::layout::{Face, middle};
 use crate::mesh::chart::face_border::FaceBorder;
 use crate::mesh::chart::face_input::FaceInput;
+use crate::mesh::request::fault::MeshFault;
 use crate::mesh::tri::tree::MAX_DEPTH;
 
 /// What went wrong, in the user's words.

@@ -4,13 +4,14 @@
 //! nodes are. Faces that cross inside both do so where an element of one goes through one of the other, or, where they share no node,
 //! comes near one; faces cover each other beside an edge of one that lies on the other, or by a place inside one of them.
 
+use crate::model::fault::ModelFault;
 use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec3;
 
 use crate::base::bbox::Box3;
 use crate::base::boxtree::{BoxTree, PAIR};
-use crate::base::fault::{CutFault, Fault, Result, SurfaceFault};
+use crate::base::fault::Result;
 use crate::base::limits::WORK_OF_A_SURFACE;
 use crate::base::tolerance::SINGULAR;
 use crate::base::{par, work};
@@ -23,6 +24,7 @@ use crate::mesh::request::input::Input;
 use crate::mesh::verify::contact_edges::{Task, meetings};
 use crate::mesh::verify::contact_leaves::{BULGE, Leaves};
 use crate::model::SurfaceId;
+use crate::surface::faults::CutFault;
 use crate::surface::intersect::with_surfaces::with_surfaces;
 use crate::surface::{Closest, Nearest, SurfaceKind};
 
@@ -82,7 +84,7 @@ pub fn refuse_overlaps(input: &Input, touches: &[Touch]) -> Result<()> {
     let Some(Touch { surfaces: (a, b), names, at, .. }) = touches.iter().find(|t| t.kind == Kind::Overlap) else { return Ok(()) };
     let origin = |place: usize| input.model.surfaces[input.plan.surfaces[place].0.index()].surface.origin();
     let (a, b, names) = (origin(*a), origin(*b), names.clone());
-    Err(SurfaceFault::ImprintOverlap { imprint: *imprint, a, b, names, at: *at }.into())
+    Err(ModelFault::ImprintOverlap { imprint: *imprint, a, b, names, at: *at }.into())
 }
 
 impl<'a> Scan<'a> {
@@ -406,11 +408,10 @@ impl Known<'_> {
             let common = with_surfaces(std::slice::from_ref(a), std::slice::from_ref(b), scan.input.plan.origin, scan.input.tolerance);
             match common {
                 Ok(common) => common.curves.first().map(|curve| (Kind::Crossing, curve.point(0.5))),
-                Err(Fault::Cut(fault)) if matches!(*fault, CutFault::RunAlong { .. }) => {
-                    let CutFault::RunAlong { at, .. } = *fault else { return None };
-                    Some((Kind::Overlap, at))
-                }
-                Err(_) => Some((Kind::Unknown, scan.between(pairs[n].0, pairs[n].1))),
+                Err(fault) => match fault.of() {
+                    Some(CutFault::RunAlong { at, .. }) => Some((Kind::Overlap, *at)),
+                    _ => Some((Kind::Unknown, scan.between(pairs[n].0, pairs[n].1))),
+                },
             }
         });
         for ((a, b), found) in pairs.into_iter().zip(found) {

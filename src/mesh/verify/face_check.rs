@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 use glam::DVec2;
 
-use crate::base::fault::{Close, CutFault, Fault, MeshFault};
+use crate::base::fault::Fault;
 use crate::base::text::real;
 use crate::base::tolerance::{TOLD_APART, WHOLE_NUMBER};
 use crate::base::{job, par};
@@ -18,9 +18,11 @@ use crate::mesh::border::nodes::Nodes;
 use crate::mesh::data::face_geometry::{FaceGeometry, FaceNodes};
 use crate::mesh::data::face_mesh::{FaceMesh, element_ranges};
 use crate::mesh::data::mesh::Mesh;
+use crate::mesh::request::fault::{Close, MeshFault};
 use crate::mesh::request::input::Input;
 use crate::mesh::request::methods::{Elements, Method};
 use crate::mesh::verify::extent::{self, Extent};
+use crate::surface::faults::CutFault;
 use crate::surface::{Domain, Surface};
 
 /// The elements of one face, and what is known of it.

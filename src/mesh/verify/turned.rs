@@ -2,12 +2,13 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{MeshFault, Result};
+use crate::base::fault::Result;
 use crate::base::par;
 use crate::mesh::data::face_geometry::{FaceNodes, Free};
 use crate::mesh::data::face_mesh::FaceMesh;
 use crate::mesh::data::mesh::Mesh;
 use crate::mesh::data::quality::is_concave;
+use crate::mesh::request::fault::MeshFault;
 use crate::mesh::request::input::Input;
 use crate::mesh::request::recall::RecallFace;
 use crate::surface::Surface;

@@ -9,8 +9,8 @@ use super::tell::tolerances;
 use super::values::rounded;
 use crate::base::bbox::Box3;
 use crate::base::boxtree::BoxTree;
-use crate::base::fault::Malformed;
 use crate::base::job;
+use crate::io::files::fault::Malformed;
 use crate::io::mesh_files::{obj_read, stl_read};
 use crate::mesh::Mesh;
 

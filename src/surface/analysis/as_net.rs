@@ -1,12 +1,14 @@
 //! Any mapped surface as a B-spline: exact where it is one, else within the tolerance, with a bound of what it is off.
 
-use crate::base::fault::{CurveFault, Fault, NetFault, Result, SurfaceFault};
+use crate::base::fault::{Fault, Result};
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
+use crate::geometry::data::fault::CurveFault;
 use crate::surface::analysis::as_net::strips::Fit;
 use crate::surface::core::shape::Shape;
 use crate::surface::core::surface::Surface;
 use crate::surface::data::kind::{Domain, SurfaceKind};
+use crate::surface::faults::{NetFault, SurfaceFault};
 use crate::surface::rails::rail::Rail;
 use crate::surface::rails::reparam::Map;
 use crate::surface::rails::side::between;

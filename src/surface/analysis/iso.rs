@@ -2,11 +2,12 @@
 
 use std::sync::Arc;
 
-use crate::base::fault::{CurveFault, Result};
+use crate::base::fault::Result;
 use crate::base::origin::Origin;
 use crate::base::tolerance::{EPSILON, Tolerance};
 use crate::geometry::construct::build::line;
 use crate::geometry::curves::curve::Shape as CurveShape;
+use crate::geometry::data::fault::CurveFault;
 use crate::geometry::{Curve, Kind};
 use crate::network::Chain;
 use crate::surface::analysis::iso_fit;

@@ -6,12 +6,13 @@
 
 use std::sync::Arc;
 
-use crate::base::fault::{CurveFault, Result};
+use crate::base::fault::Result;
 use crate::base::job;
 use crate::base::origin::Origin;
 use crate::base::range::Interval3;
 use crate::base::tolerance::{NUDGE, Tolerance};
 use crate::geometry::curves::curve::Shape;
+use crate::geometry::data::fault::CurveFault;
 use crate::geometry::{Curve, Jet, Kind, Nurbs};
 use crate::surface::analysis::iso_line::IsoLine;
 use crate::surface::core::surface::Surface;

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{Fault, NetFault};
+use crate::base::fault::Fault;
 use crate::base::origin::Origin;
 use crate::base::tolerance::{NUDGE, Tolerance};
 use crate::network::Chain;
@@ -12,6 +12,7 @@ use crate::surface::core::surface::Surface;
 use crate::surface::data::breaks::chain_breaks;
 use crate::surface::data::kind::SurfaceKind;
 use crate::surface::data::one_sided::OneSided;
+use crate::surface::faults::NetFault;
 use crate::surface::rails::rail::Rail;
 use crate::surface::shapes::blend::Blend;
 

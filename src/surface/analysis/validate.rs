@@ -2,13 +2,14 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{Fault, SurfaceFault};
+use crate::base::fault::Fault;
 use crate::base::tolerance::{SINGULAR, Tolerance};
 use crate::base::{job, math};
 use crate::surface::core::surface::Surface;
 use crate::surface::data::jet::{Jet2, unit_normal};
 use crate::surface::data::kind::Domain;
 use crate::surface::data::one_sided::OneSided;
+use crate::surface::faults::SurfaceFault;
 
 /// Samples a direction and cell, beside those at its ends: at most and at least, and how many there may be in all.
 const SAMPLES: (usize, usize) = (9, 1);
@@ -85,13 +86,10 @@ impl Surface {
     /// Where it folds over, with the turn of its normal there, or else where it has none, as `review` finds them.
     pub fn fold(&self, tolerance: &Tolerance) -> Option<(DVec3, Option<f64>)> {
         let found = review(self, tolerance);
-        let place = |fault: &Fault| {
-            let Fault::Surface(fault) = fault else { return None };
-            match **fault {
-                SurfaceFault::PatchFolded { at, turn, .. } => Some((at, Some(turn))),
-                SurfaceFault::PatchSingular { at, .. } => Some((at, None)),
-                _ => None,
-            }
+        let place = |fault: &Fault| match fault.of()? {
+            SurfaceFault::PatchFolded { at, turn, .. } => Some((*at, Some(*turn))),
+            SurfaceFault::PatchSingular { at, .. } => Some((*at, None)),
+            _ => None,
         };
         found.iter().rev().find_map(place)
     }

@@ -1,9 +1,10 @@
 //! Surfaces from a grid of curves: Coons, Lagrange transfinite, and the uniform trilateral
 //! [Koh & Park 1990, §4; Coons 1967].
 
+use crate::network::grid_fault::GridFault;
 use glam::DVec3;
 
-use crate::base::fault::{Fault, Result, SurfaceFault};
+use crate::base::fault::{Fault, Result};
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::network::flow::Member;
@@ -12,6 +13,7 @@ use crate::surface::core::shape::Shape;
 use crate::surface::core::surface::{Parts, Surface};
 use crate::surface::data::breaks::merge_kinks;
 use crate::surface::data::kind::{Domain, SurfaceKind};
+use crate::surface::faults::SurfaceFault;
 use crate::surface::rails::rail::Rail;
 use crate::surface::rails::reparam::{Map, Reparam};
 use crate::surface::rails::side::{Border, Side};
@@ -269,7 +271,7 @@ fn averages(curves: &[Prepared], grid: &Grid, across: &[Member], tolerance: &Tol
     let origin = |k: usize| across.get(k % across.len().max(1)).map_or(Origin::NONE, |m| grid.chains[m.curve].origin());
     let disorder = |curve: &Prepared, i: usize| {
         let (first, second) = (curve.chain.point(curve.raw[i - 1]), curve.chain.point(curve.raw[i]));
-        Fault::from(SurfaceFault::GridNotMonotone { curve: curve.chain.origin(), a: origin(i - 1), b: origin(i), first, second })
+        Fault::from(GridFault::GridNotMonotone { curve: curve.chain.origin(), a: origin(i - 1), b: origin(i), first, second })
     };
     let oriented = |curve: &Prepared, i: usize| if curve.raw[0] > curve.raw[n - 1] { 1.0 - curve.raw[i] } else { curve.raw[i] };
     for curve in curves {

@@ -4,7 +4,7 @@
 //! written; of one curve, or of more than four, the runs between corners. Any other boundary is a face with an area
 //! and a border, over the box of its plane, but without a map.
 
-use crate::base::fault::{Fault, LoopRole, Result};
+use crate::base::fault::{Fault, Result};
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::network::{Chain, Flow, FlowKind};
@@ -14,6 +14,7 @@ use crate::surface::core::shape::Shape;
 use crate::surface::core::surface::{Parts, Surface};
 use crate::surface::data::flow_words::phrase;
 use crate::surface::data::kind::Domain;
+use crate::surface::faults::LoopRole;
 use crate::surface::rails::boundary::{Step, simple, walked};
 use crate::surface::rails::rail::Rail;
 use crate::surface::rails::reparam::Map;

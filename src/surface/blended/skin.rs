@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{Construction, Fault, NetFault, Result, SurfaceFault, ValueFault};
+use crate::base::fault::{Fault, Result, ValueFault};
 use crate::base::math;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
@@ -16,6 +16,7 @@ use crate::surface::core::surface::Surface;
 use crate::surface::data::flow_words::phrase;
 use crate::surface::data::kind::SurfaceKind;
 use crate::surface::data::one_sided::OneSided;
+use crate::surface::faults::{Construction, NetFault, SurfaceFault};
 use crate::surface::rails::rail::Rail;
 use crate::surface::rails::side::{Border, Side};
 

@@ -1,16 +1,19 @@
 //! Planes by their frame: unbounded, whole squares of faces, faces without a map.
 
+use crate::network::grid_fault::GridFault;
 use glam::DVec3;
 
 use crate::base::bbox::Box3;
-use crate::base::fault::{CurveFault, LoopRole, Result, SurfaceFault};
+use crate::base::fault::Result;
 use crate::base::math;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
+use crate::geometry::data::fault::CurveFault;
 use crate::network::Chain;
 use crate::surface::core::shape::Shape;
 use crate::surface::core::surface::{Parts, Surface};
 use crate::surface::data::kind::{Domain, SurfaceKind};
+use crate::surface::faults::{LoopRole, SurfaceFault};
 use crate::surface::rails::boundary::{Step, end, samples, start, walked};
 use crate::surface::rails::side::{Border, Side};
 use crate::surface::shapes::frame::Frame;
@@ -95,9 +98,9 @@ pub(crate) fn fitted(walk: &[Step], tolerance: &Tolerance) -> Result<Frame> {
     let area: DVec3 = (0..points.len()).map(|k| (points[k] - center).cross(points[(k + 1) % points.len()] - center)).sum();
     let size = Box3::of(points.iter().copied()).diagonal();
     let Some(normal) = math::unit(area, tolerance.point * size) else {
-        let fault = SurfaceFault::FlowUnknown {
+        let fault = GridFault::FlowUnknown {
             curves: walk.iter().map(|s| s.0.origin()).collect(),
-            why: crate::base::fault::NoFlow::TooFewCurves { given: walk.len() },
+            why: crate::network::no_flow::NoFlow::TooFewCurves { given: walk.len() },
         };
         return Err(fault.into());
     };

@@ -1,6 +1,6 @@
 //! The words of surfaces, and where their parameters may be.
 
-use crate::base::fault::Construction;
+use crate::surface::faults::Construction;
 
 /// The word a surface was made with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

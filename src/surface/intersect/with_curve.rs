@@ -3,10 +3,12 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::base::fault::{CurveFault, NetworkFault, Result};
+use crate::base::fault::Result;
 use crate::base::origin::Origin;
 use crate::base::tolerance::{ROUNDING_SHARE, Tolerance};
 use crate::geometry::Curve;
+use crate::geometry::data::fault::CurveFault;
+use crate::network::fault::NetworkFault;
 use crate::network::snap::may_snap;
 use crate::network::{Chain, meet as meet_chains};
 use crate::surface::closest::nearest::{Nearest, closest};

@@ -1,6 +1,6 @@
 //! `join`: surfaces that follow one another along whole common borders, as one.
 
-use crate::base::fault::{Fault, JoinFault, Result, ValueFault};
+use crate::base::fault::{Fault, Result, ValueFault};
 use crate::base::math;
 use crate::base::origin::Origin;
 use crate::base::quadrature::gauss_legendre;
@@ -12,6 +12,7 @@ use crate::surface::core::surface::{Parts, Surface};
 use crate::surface::data::jet::unit_normal;
 use crate::surface::data::kind::{Domain, SurfaceKind};
 use crate::surface::data::one_sided::OneSided;
+use crate::surface::faults::JoinFault;
 use crate::surface::joined::rims::{self, Link, Rim, links};
 use crate::surface::rails::side::{Border, Side};
 

@@ -2,11 +2,12 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::base::fault::{CurveFault, Result};
+use crate::base::fault::Result;
 use crate::base::job;
 use crate::base::origin::Origin;
 use crate::base::tolerance::{BESIDE, NUDGE, PARALLEL, Tolerance};
 use crate::geometry::Nurbs;
+use crate::geometry::data::fault::CurveFault;
 use crate::network::Chain;
 use crate::surface::closest::foot::{foot, step};
 use crate::surface::core::surface::{Parts, Surface};

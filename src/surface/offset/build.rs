@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-use crate::base::fault::{Fault, Result, SurfaceFault};
+use crate::base::fault::{Fault, Result};
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::Motion;
@@ -17,6 +17,7 @@ use crate::surface::closest::foot::foot;
 use crate::surface::closest::nearest::closest;
 use crate::surface::core::surface::Surface;
 use crate::surface::data::kind::{Domain, SurfaceKind};
+use crate::surface::faults::SurfaceFault;
 use crate::surface::offset::boundary::{Boundary, boundaries, whole};
 use crate::surface::offset::exact::{folds, level, rough, swept};
 use crate::surface::rails::side::{Border, Side};

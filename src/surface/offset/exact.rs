@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{Fault, Result, SurfaceFault, WallFault};
+use crate::base::fault::{Fault, Result};
 use crate::base::math;
 use crate::base::origin::Origin;
 use crate::base::tolerance::{NUDGE, POLE_STEP, Tolerance};
@@ -14,6 +14,7 @@ use crate::surface::core::surface::Surface;
 use crate::surface::data::jet::unit_normal;
 use crate::surface::data::kind::{Domain, SurfaceKind};
 use crate::surface::data::one_sided::OneSided;
+use crate::surface::faults::{SurfaceFault, WallFault};
 use crate::surface::offset::boundary::whole;
 use crate::surface::offset::revolved_profile::beside_axis;
 use crate::surface::rails::side::Side;

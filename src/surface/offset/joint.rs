@@ -6,12 +6,13 @@ use glam::DVec3;
 
 use crate::base::bbox::Box3;
 use crate::base::boxtree::BoxTree;
-use crate::base::fault::{Result, WallEdge, WallFault};
+use crate::base::fault::Result;
 use crate::base::math;
 use crate::base::origin::Origin;
 use crate::base::tolerance::{NUDGE, Tolerance};
 use crate::network::Chain;
 use crate::surface::core::surface::Surface;
+use crate::surface::faults::{WallEdge, WallFault};
 use crate::surface::offset::boundary::{Boundary, boundaries};
 use crate::surface::trims::holes::with_loops;
 use crate::surface::trims::trim::natural;

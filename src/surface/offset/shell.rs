@@ -4,7 +4,7 @@ use glam::{DMat3, DVec2, DVec3};
 
 use crate::base::bbox::Box3;
 use crate::base::boxtree::BoxTree;
-use crate::base::fault::{Fault, Result, WallEdge, WallFault};
+use crate::base::fault::{Fault, Result};
 use crate::base::origin::Origin;
 use crate::base::tolerance::{NUDGE, Tolerance};
 use crate::geometry::construct::build::line;
@@ -13,6 +13,7 @@ use crate::surface::closest::foot;
 use crate::surface::closest::nearest::{Nearest, closest};
 use crate::surface::core::surface::Surface;
 use crate::surface::data::kind::Domain;
+use crate::surface::faults::{WallEdge, WallFault};
 use crate::surface::intersect::with_surfaces::with_surfaces;
 use crate::surface::offset::boundary::{self, whole};
 use crate::surface::offset::extended::longer;

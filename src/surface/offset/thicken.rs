@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{Fault, Result, WallEdge, WallFault};
+use crate::base::fault::{Fault, Result};
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::construct::build::line;
@@ -13,6 +13,7 @@ use crate::surface::closest::nearest::closest;
 use crate::surface::core::plane;
 use crate::surface::core::surface::Surface;
 use crate::surface::data::kind::{Domain, SurfaceKind};
+use crate::surface::faults::{WallEdge, WallFault};
 use crate::surface::offset::boundary::{Boundary, boundaries, curve};
 use crate::surface::offset::build::{offset, with_loops};
 use crate::surface::offset::exact::{is_exact, parts_of};

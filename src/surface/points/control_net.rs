@@ -2,9 +2,10 @@
 
 use glam::{DVec3, DVec4};
 
-use crate::base::fault::{CurveFault, Result, ValueFault};
+use crate::base::fault::{Result, ValueFault};
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
+use crate::geometry::data::fault::CurveFault;
 use crate::geometry::shapes::nurbs::{MAX_DEGREE, weighted};
 use crate::surface::core::shape::Shape;
 use crate::surface::core::surface::{Parts, Surface};

@@ -2,14 +2,16 @@
 
 use glam::{DVec3, DVec4};
 
-use crate::base::fault::{CurveFault, Fault, Result, SurfaceFault, ValueFault};
+use crate::base::fault::{Fault, Result, ValueFault};
 use crate::base::job;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::construct::spline::{open_slopes, through};
+use crate::geometry::data::fault::CurveFault;
 use crate::geometry::shapes::nurbs::projected;
 use crate::surface::core::surface::Surface;
 use crate::surface::data::kind::SurfaceKind;
+use crate::surface::faults::SurfaceFault;
 use crate::surface::shapes::nurbs::NurbsSurface;
 
 /// Chord fractions of a row may differ from the mean by this factor before a word is due.

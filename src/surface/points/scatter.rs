@@ -5,12 +5,14 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::base::fault::{CurveFault, Fault, Result, ScatterFault};
+use crate::base::fault::{Fault, Result};
 use crate::base::job;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::base::triangulate::delaunay;
+use crate::geometry::data::fault::CurveFault;
 use crate::surface::core::surface::Surface;
+use crate::surface::faults::ScatterFault;
 use crate::surface::points::scatter::ground::{Cloud, cloud};
 use crate::surface::shapes::cubic_triangle::{Corner, pieces};
 use crate::surface::shapes::frame::Frame;

@@ -1,12 +1,15 @@
 //! Curves that close, walked round in order.
 
+use crate::network::grid_fault::GridFault;
 use glam::DVec3;
 
-use crate::base::fault::{CurveEnd, Fault, LoopFault, LoopRole, NetworkFault, Result, SurfaceFault};
+use crate::base::fault::{Fault, Result};
 use crate::base::tolerance::{BESIDE, Tolerance};
 use crate::geometry::{Curve, Hit, Kind, self_intersect};
+use crate::network::fault::{CurveEnd, NetworkFault};
 use crate::network::{Chain, meet};
 use crate::surface::data::breaks::chain_breaks;
+use crate::surface::faults::{LoopFault, LoopRole, SurfaceFault};
 
 /// A chain of the boundary with `true` where the walk round it runs against the chain.
 pub(crate) type Step = (Chain, bool);
@@ -24,7 +27,7 @@ pub(crate) fn end((chain, against): &Step) -> DVec3 {
 pub(crate) fn walked(chains: &[Chain], role: LoopRole, tolerance: &Tolerance) -> Result<Vec<Step>> {
     let mut left: Vec<&Chain> = chains.iter().collect();
     if left.is_empty() {
-        return Err(SurfaceFault::FlowUnknown { curves: Vec::new(), why: crate::base::fault::NoFlow::TooFewCurves { given: 0 } }.into());
+        return Err(GridFault::FlowUnknown { curves: Vec::new(), why: crate::network::no_flow::NoFlow::TooFewCurves { given: 0 } }.into());
     }
     once_each(chains, role, tolerance)?;
     let mut walk: Vec<Step> = vec![(left.remove(0).clone(), false)];

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::base::fault::{BlendFault, NoBlend, Result};
+use crate::base::fault::Result;
 use crate::base::math;
 use crate::base::origin::Origin;
 use crate::base::tolerance::{NUDGE, Tolerance};
@@ -10,6 +10,7 @@ use crate::network::Chain;
 use crate::surface::closest::foot;
 use crate::surface::core::surface::Surface;
 use crate::surface::data::jet::unit_normal;
+use crate::surface::faults::{BlendFault, NoBlend};
 use crate::surface::rolling::face::Face;
 use crate::surface::rolling::station::{Place, Station, station};
 

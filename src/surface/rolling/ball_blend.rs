@@ -6,12 +6,14 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{BlendFault, CurveFault, Fault, NoBlend, Result};
+use crate::base::fault::Result;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
+use crate::geometry::data::fault::CurveFault;
 use crate::network::Chain;
 use crate::surface::core::plane;
 use crate::surface::core::surface::Surface;
+use crate::surface::faults::{BlendFault, NoBlend};
 use crate::surface::intersect::with_surfaces::with_surfaces;
 use crate::surface::rolling::ball::Ball;
 use crate::surface::rolling::cut::cut_back;
@@ -39,10 +41,8 @@ pub fn rolling([a, b]: [&Surface; 2], radius: f64, keep: Option<DVec3>, origin: 
     let stations = largest::stations(&ball, radius, origin, is_made)?;
     made(stations, radius).map_err(|fault| {
         // What is lost on the way may be too large for it.
-        if let Fault::Curve(of) = &fault
-            && let CurveFault::NotConverged { at, .. } = **of
-        {
-            return largest::above_made(&ball, (radius, at), origin, is_made).unwrap_or(fault);
+        if let Some(CurveFault::NotConverged { at, .. }) = fault.of() {
+            return largest::above_made(&ball, (radius, *at), origin, is_made).unwrap_or(fault);
         }
         fault
     })

@@ -2,11 +2,12 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{NoBlend, Result};
+use crate::base::fault::Result;
 use crate::base::origin::Origin;
 use crate::geometry::construct::build::line;
 use crate::network::{Chain, meet};
 use crate::surface::core::surface::Surface;
+use crate::surface::faults::NoBlend;
 use crate::surface::offset::boundary::border_chains;
 use crate::surface::rolling::ball::Ball;
 use crate::surface::rolling::made::Roll;

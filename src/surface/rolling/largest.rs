@@ -2,8 +2,9 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{BlendFault, Fault, NoBlend, Result};
+use crate::base::fault::{Fault, Result};
 use crate::base::origin::Origin;
+use crate::surface::faults::{BlendFault, NoBlend};
 use crate::surface::rolling::ball::Ball;
 use crate::surface::rolling::station::Station;
 

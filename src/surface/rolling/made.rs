@@ -2,12 +2,13 @@
 
 use glam::{DVec3, DVec4};
 
-use crate::base::fault::{CurveFault, Result};
+use crate::base::fault::Result;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::base::{job, math};
 use crate::geometry::construct::build::{arc_center, arc_through};
 use crate::geometry::curves::curve::Shape as CurveShape;
+use crate::geometry::data::fault::CurveFault;
 use crate::network::Chain;
 use crate::surface::analysis::iso_line::IsoLine;
 use crate::surface::core::surface::{Parts, Surface};

@@ -6,12 +6,13 @@ use glam::DVec3;
 
 use crate::base::bbox::Box3;
 use crate::base::digest::{StableHash, StableHasher};
-use crate::base::fault::{CurveFault, Result};
+use crate::base::fault::Result;
 use crate::base::origin::Origin;
 use crate::base::range::{Interval, Interval3};
 use crate::base::tolerance::{EPSILON, Tolerance};
 use crate::base::{math, par};
 use crate::geometry::construct::build::{arc_center, line};
+use crate::geometry::data::fault::CurveFault;
 use crate::geometry::{Curve, Jet, Motion};
 use crate::network::Chain;
 use crate::surface::data::breaks::{chain_breaks, tidy};

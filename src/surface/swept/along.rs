@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
-use crate::base::fault::{Fault, Result, SweepFault};
+use crate::base::fault::{Fault, Result};
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::Motion;
@@ -14,6 +14,7 @@ use crate::surface::data::breaks::chain_breaks;
 use crate::surface::data::flow_words::phrase;
 use crate::surface::data::kind::{Domain, SurfaceKind};
 use crate::surface::data::one_sided::OneSided;
+use crate::surface::faults::SweepFault;
 use crate::surface::rails::rail::Rail;
 use crate::surface::rails::reparam::{Map, Reparam};
 use crate::surface::rails::side::{Border, Side};

@@ -4,11 +4,12 @@ use std::sync::Arc;
 
 use glam::{DMat3, DVec3, DVec4};
 
-use crate::base::fault::{CurveFault, Result};
+use crate::base::fault::Result;
 use crate::base::job;
 use crate::base::origin::Origin;
 use crate::base::tolerance::{EPSILON, NEAREST, Tolerance};
 use crate::geometry::curves::curve::Shape;
+use crate::geometry::data::fault::CurveFault;
 use crate::geometry::shapes::nurbs::{projected, weighted};
 use crate::geometry::shapes::nurbs_edit::Bezier;
 use crate::geometry::{Curve, Kind, Nurbs};

@@ -2,10 +2,11 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{CurveFault, Result, SurfaceFault};
+use crate::base::fault::Result;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::construct::build::line;
+use crate::geometry::data::fault::CurveFault;
 use crate::geometry::shapes::nurbs::{projected, weighted};
 use crate::geometry::{Motion, Nurbs};
 use crate::network::Chain;
@@ -14,6 +15,7 @@ use crate::surface::core::surface::{Parts, Surface};
 use crate::surface::data::breaks::chain_breaks;
 use crate::surface::data::flow_words::phrase;
 use crate::surface::data::kind::{Domain, SurfaceKind};
+use crate::surface::faults::SurfaceFault;
 use crate::surface::rails::rail::Rail;
 use crate::surface::rails::reparam::Map;
 use crate::surface::rails::side::Border;

@@ -2,11 +2,12 @@
 
 use glam::{DMat3, DVec3};
 
-use crate::base::fault::{Result, SweepFault};
+use crate::base::fault::Result;
 use crate::base::math;
 use crate::base::tolerance::{PARALLEL, Tolerance};
 use crate::network::Chain;
 use crate::surface::data::breaks::chain_breaks;
+use crate::surface::faults::SweepFault;
 use crate::surface::swept::legs::Legs;
 use crate::surface::swept::revolve::Axis;
 

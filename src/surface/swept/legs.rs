@@ -2,11 +2,12 @@
 
 use glam::{DMat3, DVec3};
 
-use crate::base::fault::{Fault, Result, SweepFault};
+use crate::base::fault::{Fault, Result};
 use crate::base::tolerance::{EPSILON, NUDGE, Tolerance};
 use crate::base::{job, math};
 use crate::network::Chain;
 use crate::surface::data::breaks::chain_breaks;
+use crate::surface::faults::SweepFault;
 use crate::surface::shapes::matrices::Matrices;
 use crate::surface::swept::frame::{bent, frame, place, transported, twisted};
 

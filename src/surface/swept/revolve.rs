@@ -2,11 +2,12 @@
 
 use glam::{DVec3, DVec4};
 
-use crate::base::fault::{CurveFault, Fault, Result, SurfaceFault};
+use crate::base::fault::{Fault, Result};
 use crate::base::math;
 use crate::base::origin::Origin;
 use crate::base::tolerance::{EPSILON, NUDGE, Tolerance};
 use crate::geometry::construct::build::{arc_center, circle_start, line};
+use crate::geometry::data::fault::CurveFault;
 use crate::geometry::shapes::arc::EllipticArc;
 use crate::geometry::shapes::nurbs::{projected, weighted};
 use crate::geometry::{Motion, Nurbs};
@@ -16,6 +17,7 @@ use crate::surface::core::surface::{Parts, Surface};
 use crate::surface::data::breaks::chain_breaks;
 use crate::surface::data::flow_words::phrase;
 use crate::surface::data::kind::{Domain, SurfaceKind};
+use crate::surface::faults::SurfaceFault;
 use crate::surface::rails::side::{Border, Side};
 use crate::surface::shapes::nurbs::NurbsSurface;
 use crate::surface::shapes::sweep::{Path, Sweep};

@@ -1,14 +1,16 @@
 //! Sections and guides put in order: where they touch, which way they run, where a closed one starts.
 
+use crate::network::grid_fault::GridFault;
 use glam::DVec3;
 
-use crate::base::fault::{Fault, Result, SurfaceFault, SweepFault, ValueFault};
+use crate::base::fault::{Fault, Result, ValueFault};
 use crate::base::tolerance::{NUDGE, Tolerance};
 use crate::geometry::curves::curve::Shape;
 use crate::geometry::{Curve, Kind};
 use crate::network::meet::{closest_points, meet};
 use crate::network::{Chain, Run};
 use crate::surface::data::breaks::chain_breaks;
+use crate::surface::faults::SweepFault;
 use crate::surface::swept::laws::{Law, Station, halved, samples};
 
 /// A guide is made longer by this share of its length at each end, at most.
@@ -122,8 +124,7 @@ impl Section {
                     on_guides.push(snapped(fb, &guide.chain, tolerance));
                 }
                 [one, two, ..] => {
-                    let fault =
-                        SurfaceFault::GridDouble { a: chain.origin(), b: guide.given.origin(), first: one.point, second: two.point };
+                    let fault = GridFault::GridDouble { a: chain.origin(), b: guide.given.origin(), first: one.point, second: two.point };
                     return Err(fault.into());
                 }
             }
@@ -237,7 +238,7 @@ pub fn aligned(sections: &mut [Section], guides: &[Guide], tolerance: &Tolerance
                 let (first, second) = (sections[k].anchor(a), sections[k].anchor(b));
                 let origin = |j: usize| guides[j].given.origin();
                 let curve = sections[k].chain.origin();
-                return Err(SurfaceFault::GridNotMonotone { curve, a: origin(a), b: origin(b), first, second }.into());
+                return Err(GridFault::GridNotMonotone { curve, a: origin(a), b: origin(b), first, second }.into());
             }
         };
         if turn {

@@ -2,11 +2,12 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{CurveFault, Fault, Result, SurfaceFault, SweepFault};
+use crate::base::fault::{Fault, Result};
 use crate::base::origin::Origin;
 use crate::base::tolerance::{NEAREST, NUDGE, Tolerance};
 use crate::geometry::construct::build::line;
 use crate::geometry::construct::spline::{Ends, Spline, spline};
+use crate::geometry::data::fault::CurveFault;
 use crate::network::Chain;
 use crate::surface::blended::coons::{Made, finish};
 use crate::surface::blended::gordon::{CurveNet, Named, gordon};
@@ -14,6 +15,7 @@ use crate::surface::core::surface::Surface;
 use crate::surface::data::flow_words::phrase;
 use crate::surface::data::kind::SurfaceKind;
 use crate::surface::data::one_sided::OneSided;
+use crate::surface::faults::{SurfaceFault, SweepFault};
 use crate::surface::rails::rail::Rail;
 use crate::surface::rails::reparam::{Map, Reparam};
 use crate::surface::shapes::blend::Blend;

@@ -2,11 +2,12 @@
 
 use glam::{DMat3, DVec3};
 
-use crate::base::fault::{Fault, Result, SweepFault, ValueFault};
+use crate::base::fault::{Fault, Result, ValueFault};
 use crate::base::origin::Origin;
 use crate::base::tolerance::{NUDGE, Tolerance};
 use crate::base::{job, math};
 use crate::network::Chain;
+use crate::surface::faults::SweepFault;
 use crate::surface::swept::deform::{self, Deformation, Pieces};
 use crate::surface::swept::laws::{Law, Main, Station, check_section, plane_normal, samples};
 use crate::surface::swept::marks::Marks;

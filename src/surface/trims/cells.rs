@@ -9,11 +9,12 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
 use glam::{DVec2, DVec3};
 
-use crate::base::fault::{CutFault, Fault, Result};
+use crate::base::fault::{Fault, Result};
 use crate::base::tolerance::{TOLD_APART, Tolerance};
 use crate::network::Chain;
 use crate::surface::core::surface::Surface;
 use crate::surface::data::kind::Domain;
+use crate::surface::faults::CutFault;
 use crate::surface::rails::trim_curve::TrimCurve;
 use crate::surface::trims::cutters::Piece;
 use crate::surface::trims::faces::{Edge, Half, components, followers, is_plane, loops};

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
-use crate::base::fault::{Fault, Result, SurfaceFault};
+use crate::base::fault::{Fault, Result};
 use crate::base::origin::Origin;
 use crate::base::tolerance::{NUDGE, Tolerance};
 use crate::geometry::construct::build;
@@ -14,6 +14,7 @@ use crate::network::Chain;
 use crate::surface::closest::nearest::closest;
 use crate::surface::core::surface::Surface;
 use crate::surface::data::kind::Domain;
+use crate::surface::faults::SurfaceFault;
 use crate::surface::rails::side::{Border, Side, between};
 use crate::surface::rails::trim_curve::{Pcurve, TrimCurve};
 use crate::surface::trims::pcurve::{Off, is_pole};

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3};
 
-use crate::base::fault::{CutFault, Result};
+use crate::base::fault::Result;
 use crate::base::job;
 use crate::base::origin::Origin;
 use crate::base::tolerance::{NUDGE, TOLD_APART, Tolerance};
@@ -14,6 +14,7 @@ use crate::surface::closest::nearest::closest;
 use crate::surface::core::plane;
 use crate::surface::core::surface::Surface;
 use crate::surface::data::kind::Domain;
+use crate::surface::faults::CutFault;
 use crate::surface::rails::side::{Border, Side};
 use crate::surface::rails::trim_curve::TrimCurve;
 use crate::surface::trims::cells::{Cells, Face};

@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::base::bbox::Box3;
-use crate::base::fault::{Fault, LoopFault, LoopRole, Result, SurfaceFault};
+use crate::base::fault::{Fault, Result};
 use crate::base::origin::Origin;
 use crate::base::tolerance::{NUDGE, Tolerance};
 use crate::network::Chain;
@@ -11,6 +11,7 @@ use crate::surface::closest::nearest::closest;
 use crate::surface::core::plane;
 use crate::surface::core::surface::Surface;
 use crate::surface::data::kind::Domain;
+use crate::surface::faults::{LoopFault, LoopRole, SurfaceFault};
 use crate::surface::rails::boundary;
 use crate::surface::rails::trim_curve::TrimCurve;
 use crate::surface::trims::lone::{Keep, lone};
@@ -164,8 +165,7 @@ fn place_of(ring: &Ring, touched: Option<DVec3>) -> DVec3 {
 
 /// E502 of a hole that is one open curve, with the other ones that it closes with.
 fn together(fault: Fault, holes: &[Vec<Chain>], tolerance: &Tolerance) -> Fault {
-    let Fault::Loop(told) = &fault else { return fault };
-    let LoopFault::Open { of, ends, closes, role, .. } = told.as_ref() else { return fault };
+    let Some(LoopFault::Open { of, ends, closes, role, .. }) = fault.of() else { return fault };
     let lone: Vec<Chain> = holes.iter().filter(|h| h.len() == 1 && !h[0].is_closed(tolerance)).map(|h| h[0].clone()).collect();
     if lone.len() < 2 || boundary::walked(&lone, LoopRole::Plane, tolerance).is_err() {
         return fault;

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use glam::{DVec2, DVec3};
 
 use crate::base::bbox::Box3;
-use crate::base::fault::{LoopFault, Result};
+use crate::base::fault::Result;
 use crate::base::job;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
@@ -16,6 +16,7 @@ use crate::network::{Chain, meet};
 use crate::surface::closest::inside::within;
 use crate::surface::core::surface::Surface;
 use crate::surface::core::trim::reach;
+use crate::surface::faults::LoopFault;
 use crate::surface::rails::side::Side;
 use crate::surface::rails::trim_curve::TrimCurve;
 use crate::surface::trims::cutters::of_border;

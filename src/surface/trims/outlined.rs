@@ -10,7 +10,7 @@ use std::collections::VecDeque;
 use glam::{DVec2, DVec3};
 
 use crate::base::bbox::Box3;
-use crate::base::fault::{Result, SurfaceFault};
+use crate::base::fault::Result;
 use crate::base::origin::Origin;
 use crate::base::tolerance::{ROUNDING_SHARE, Tolerance};
 use crate::network::Chain;
@@ -18,6 +18,7 @@ use crate::surface::closest::nearest::Nearest;
 use crate::surface::core::plane;
 use crate::surface::core::surface::Surface;
 use crate::surface::data::kind::Domain;
+use crate::surface::faults::SurfaceFault;
 use crate::surface::rails::side::Side;
 use crate::surface::rails::trim_curve::TrimCurve;
 use crate::surface::trims::cells::Cells;

@@ -6,10 +6,11 @@ use std::sync::Arc;
 
 use glam::{DMat3, DVec2, DVec3};
 
-use crate::base::fault::{CurveFault, Fault, Result, SurfaceFault};
+use crate::base::fault::{Fault, Result};
 use crate::base::origin::Origin;
 use crate::base::tolerance::{EPSILON, NUDGE, Tolerance};
 use crate::geometry::curves::curve::Shape;
+use crate::geometry::data::fault::CurveFault;
 use crate::geometry::{Curve, Kind, Nurbs};
 use crate::network::Chain;
 use crate::surface::closest::foot;
@@ -18,6 +19,7 @@ use crate::surface::core::surface::Surface;
 use crate::surface::data::breaks::chain_breaks;
 use crate::surface::data::jet::Jet2;
 use crate::surface::data::kind::Domain;
+use crate::surface::faults::SurfaceFault;
 use crate::surface::trims::compose;
 
 /// Share of the tolerance that a cubic may be off.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-use crate::base::fault::{Fault, LoopRole, Result, SurfaceFault};
+use crate::base::fault::{Fault, Result};
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::network::Chain;
@@ -12,6 +12,7 @@ use crate::surface::closest::nearest::closest;
 use crate::surface::core::surface::{Parts, Surface};
 use crate::surface::core::trim::{Trim, reach};
 use crate::surface::data::kind::{Domain, SurfaceKind};
+use crate::surface::faults::{LoopRole, SurfaceFault};
 use crate::surface::rails::boundary;
 use crate::surface::rails::side::{Border, Side};
 use crate::surface::rails::trim_curve::{Pcurve, TrimCurve};

@@ -11,10 +11,11 @@ pub mod search;
 
 use glam::DVec3;
 
-use crate::base::fault::{CurveFault, Result};
+use crate::base::fault::Result;
 use crate::base::tolerance::Tolerance;
 use crate::base::work;
 use crate::geometry::curves::curve::Curve;
+use crate::geometry::data::fault::CurveFault;
 use crate::geometry::query::intersect::search::{Search, Side};
 
 /// Pairs of parts that are looked at in the time of an evaluation of a curve.

@@ -1,7 +1,7 @@
 //! How faces join along the edges they share.
 
 use crate::base::bbox::Box3;
-use crate::base::fault::{Say, SurfaceFault, ValueFault};
+use crate::base::fault::{Say, ValueFault};
 use crate::base::tolerance::Tolerance;
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
@@ -9,6 +9,7 @@ use crate::lang::eval::scene::Scene;
 use crate::lang::eval::std::kinds::{EdgeOf, EdgeOrSurface, Faces};
 use crate::lang::values::types::{Angle, Length};
 use crate::lang::values::value::Value;
+use crate::model::fault::ModelFault;
 use crate::model::{Contact, EdgeId, SurfaceId};
 use crate::surface::Surface;
 use crate::{builtins, fields};
@@ -33,7 +34,7 @@ fn shared(scene: &Scene, (a, b): (&[Surface], Option<&[Surface]>), (near, tolera
         let (first, last) = found.map_or((ours.first().copied(), theirs.first().copied()), |f| (Some(f.surfaces.0), Some(f.surfaces.1)));
         let (a, b) = (first.map(origin).unwrap_or_default(), last.map(origin).unwrap_or_default());
         let (gap, at) = found.map_or((0.0, glam::DVec3::ZERO), |f| (f.gap, f.at));
-        return Err(SurfaceFault::NotAdjacent { a, b, gap, at }.into());
+        return Err(ModelFault::NotAdjacent { a, b, gap, at }.into());
     }
     Ok(contacts)
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use crate::base::fault::{Fault, LoopFault, SurfaceFault, ValueFault};
+use crate::base::fault::{Fault, ValueFault};
 use crate::base::tolerance::Tolerance;
 use crate::builtins;
 use crate::lang::eval::context::Cx;
@@ -19,6 +19,7 @@ use crate::network::{self, Chain, ChainFlow, FlowKind};
 use crate::surface::blended::coons::{self, Grid, Method, Settings};
 use crate::surface::blended::plane_face;
 use crate::surface::core::plane;
+use crate::surface::faults::{LoopFault, SurfaceFault};
 use crate::surface::intersect::self_intersection::crossing;
 use crate::surface::points::control_net::{self, Net};
 use crate::surface::points::interpolate;

@@ -5,8 +5,9 @@
 
 use glam::{DVec3, DVec4};
 
-use crate::base::fault::{CurveFault, Result};
+use crate::base::fault::Result;
 use crate::base::tolerance::{EPSILON, NUDGE, Tolerance};
+use crate::geometry::data::fault::CurveFault;
 use crate::surface::core::surface::Surface;
 use crate::surface::data::jet::{Jet2, slopes};
 use crate::surface::data::kind::Domain;

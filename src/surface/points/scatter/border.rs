@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
-use crate::base::fault::{Fault, Result, SurfaceFault};
+use crate::base::fault::{Fault, Result};
 use crate::base::job;
 use crate::base::origin::Origin;
 use crate::base::tolerance::{NUDGE, Tolerance};
@@ -15,6 +15,7 @@ use crate::network::Chain;
 use crate::surface::core::shape::Shape;
 use crate::surface::core::surface::{Parts, Surface};
 use crate::surface::data::kind::{Domain, SurfaceKind};
+use crate::surface::faults::SurfaceFault;
 use crate::surface::rails::side::{Border, Side as Edge};
 use crate::surface::rails::trim_curve::{Pcurve, TrimCurve};
 use crate::surface::shapes::height_field::Field;

@@ -2,10 +2,12 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::base::fault::{CurveFault, Fault, Result, ScatterFault};
+use crate::base::fault::{Fault, Result};
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::base::{job, math};
+use crate::geometry::data::fault::CurveFault;
+use crate::surface::faults::ScatterFault;
 
 /// Sweeps of rotations after which a symmetric matrix of three rows is diagonal.
 const SWEEPS: usize = 32;

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::network::typed;
-use super::{Describe, Edit, Report, Say, Subject};
+use crate::base::fault::quantities::typed;
+use crate::base::fault::{Describe, Edit, Report, Say, Subject};
 use crate::base::math;
 use crate::base::origin::Origin;
 use crate::base::text::real;

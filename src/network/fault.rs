@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::{Describe, Edit, Report, Say, Subject};
-use crate::base::math;
+use crate::base::fault::quantities::{round_above, round_down, round_up, typed};
+use crate::base::fault::{Describe, Edit, Report, Say, Subject};
 use crate::base::origin::Origin;
 use crate::base::text::decimals;
 use crate::base::tolerance::SNAP_SHARE;
@@ -211,38 +211,6 @@ impl CurveEnd {
     fn verb(&self) -> &'static str {
         if self.last { "ends here" } else { "starts here" }
     }
-}
-
-/// The next number of the row 1, 2, 5, 10, … at or above a positive length.
-pub fn round_up(length: f64) -> f64 {
-    let decade = math::pow(10.0, math::log10(length).floor());
-    let share = length / decade;
-    // A whole multiple of a decade may come out a hair above itself.
-    let step = [1.0, 2.0, 5.0].into_iter().find(|step| share <= step * (1.0 + crate::base::tolerance::EPSILON)).unwrap_or(10.0);
-    step * decade
-}
-
-/// The next number of the row 1, 2, 5, 10, … above a positive length: ends closer than it are joined.
-pub fn round_above(length: f64) -> f64 {
-    let up = round_up(length);
-    if up > length * (1.0 + crate::base::tolerance::EPSILON) { up } else { round_up(up * 1.5) }
-}
-
-/// The next number of the row 1, 2, 5, 10, … below a positive length.
-pub fn round_down(length: f64) -> f64 {
-    let decade = math::pow(10.0, math::log10(length).floor());
-    let share = length / decade;
-    let step = [5.0, 2.0].into_iter().find(|step| share > *step).unwrap_or(if share > 1.0 { 1.0 } else { 0.5 });
-    step * decade
-}
-
-/// A length as it is typed: the unit sticks to the number, without trailing zeros.
-pub(super) fn typed(say: &dyn Say, length: f64) -> String {
-    let said = say.length(length);
-    let (number, unit) = said.split_once(' ').unwrap_or((&said, ""));
-    let number = if number.contains('.') && !number.contains('e') { number.trim_end_matches('0').trim_end_matches('.') } else { number };
-    // A unit that shows too few digits must not turn the advice into a zero.
-    if number.parse::<f64>().is_ok_and(|shown| shown == 0.0) { format!("{length:?}") } else { format!("{number}{unit}") }
 }
 
 impl Describe for NetworkFault {

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::network::{round_above, typed};
-use super::{Describe, Report, Say};
+use crate::base::fault::quantities::{round_above, typed};
+use crate::base::fault::{Describe, Report, Say};
 use crate::base::origin::Origin;
 
 /// What can go wrong with a net of two families. Lengths and points are in model units.

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Describe, Report, Say};
+use crate::base::fault::{Describe, Report, Say};
 use crate::base::origin::Origin;
 
 /// Why the walls of two faces do not meet at their edge. Lengths in model units.

@@ -1,6 +1,6 @@
 //! Family 8: files that cannot be read or written, and what a format could not hold.
 
-use super::{Describe, Edit, Report, Say, Subject};
+use crate::base::fault::{Describe, Edit, Report, Say, Subject};
 use crate::base::origin::Origin;
 use crate::base::text::article;
 

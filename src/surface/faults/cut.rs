@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Describe, Report, Say};
+use crate::base::fault::{Describe, Report, Say};
 use crate::base::origin::Origin;
 
 /// What can go wrong where surfaces meet or are cut. Lengths are model units.

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::network::typed;
-use super::{Describe, Edit, Report, Say, Subject};
+use crate::base::fault::quantities::typed;
+use crate::base::fault::{Describe, Edit, Report, Say, Subject};
 use crate::base::origin::Origin;
 use crate::base::text::decimals;
 
@@ -272,39 +272,6 @@ pub enum MeshFault {
         needed: f64,
         /// Where.
         at: DVec3,
-    },
-    /// E711: two sides that should be one lie too far apart.
-    EdgeMismatch {
-        /// One surface.
-        a: Origin,
-        /// The other one.
-        b: Origin,
-        /// Their largest distance.
-        gap: f64,
-        /// Where that is.
-        at: DVec3,
-        /// The distance within which edges are glued, with the expression that says so.
-        stated: (f64, Origin),
-    },
-    /// N712: edges shorter than what is glued became corners.
-    EdgeTooShort {
-        /// The surface or curve it is on.
-        of: Origin,
-        /// Its length.
-        length: f64,
-        /// Where.
-        at: DVec3,
-        /// How many others that are shorter.
-        more: usize,
-    },
-    /// N712: a face thinner than what is glued became an edge.
-    FaceTooThin {
-        /// The surface.
-        surface: Origin,
-        /// A point of its border.
-        at: DVec3,
-        /// How many others.
-        more: usize,
     },
     /// E715: elements that are turned over or have no area.
     Inverted {
@@ -611,45 +578,6 @@ fn describe_faces(fault: &MeshFault, say: &dyn Say) -> Report {
             Report::new("E705", format!("{} cannot be mapped at {}: {why}", say.quoted(*surface, "a face"), say.point(*at)))
                 .at(*surface, "this face")
         }
-        F::EdgeMismatch { a, b, gap, at, stated } => Report::new(
-            "E711",
-            format!(
-                "the borders of {} and {} are {} apart at {}",
-                say.quoted(*a, "one face"),
-                say.quoted(*b, "its neighbour"),
-                say.length(*gap),
-                say.point(*at)
-            ),
-        )
-        .at(stated.1, format!("edges within {} are glued", say.length(stated.0)))
-        .at(*a, "this border")
-        .at(*b, "and this one")
-        .help("set a larger `snap`, or build both on the same curve"),
-        F::EdgeTooShort { of, length, at, more } => Report::new(
-            "N712",
-            format!(
-                "an edge of {} only {} long at {} became a corner{}",
-                say.quoted(*of, "a face"),
-                say.length(*length),
-                say.point(*at),
-                match more {
-                    0 => String::new(),
-                    1 => ", and a shorter one".to_owned(),
-                    _ => format!(", and {more} shorter ones"),
-                }
-            ),
-        )
-        .at(*of, "has two corners that almost coincide"),
-        F::FaceTooThin { surface, at, more } => Report::new(
-            "N712",
-            format!(
-                "{} is thinner than the gluing distance and became an edge at {}{}",
-                say.quoted(*surface, "a face"),
-                say.point(*at),
-                if *more == 0 { String::new() } else { format!(", as {more} others did") }
-            ),
-        )
-        .at(*surface, "has no interior left"),
         F::Inverted { surface, count, uv, at, free } => Report::new(
             "E715",
             format!(

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Describe, Report, Say};
+use crate::base::fault::{Describe, Report, Say};
 use crate::base::origin::Origin;
 
 /// Why two surfaces have no edge that a ball can roll along. Points are in model units.

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Describe, Report, Say};
+use crate::base::fault::{Describe, Report, Say};
 use crate::base::origin::Origin;
 
 /// E722: why surfaces are not joined. Lengths and points are in model units.

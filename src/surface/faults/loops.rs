@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Describe, Edit, Report, Say, Subject};
+use crate::base::fault::{Describe, Edit, Report, Say, Subject};
 use crate::base::origin::Origin;
 
 /// What the curves of a loop were given for.

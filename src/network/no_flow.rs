@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Report, Say, Subject};
+use crate::base::fault::{Report, Say, Subject};
 use crate::base::origin::Origin;
 
 /// Why curves span no flow, nearest to success first.
@@ -75,7 +75,7 @@ pub enum NoFlow {
 }
 
 /// What the report says of curves that span no flow.
-pub(super) fn describe(curves: &[Origin], why: &NoFlow, say: &dyn Say) -> Report {
+pub(crate) fn describe(curves: &[Origin], why: &NoFlow, say: &dyn Say) -> Report {
     let report = |text: String| Report::new("E601", text);
     match why {
         NoFlow::TooFewCurves { given } => report(format!("{given} curve{} cannot span a surface", if *given == 1 { "" } else { "s" }))

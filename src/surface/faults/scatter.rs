@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Describe, Report, Say, Subject};
+use crate::base::fault::{Describe, Report, Say, Subject};
 use crate::base::origin::Origin;
 
 /// What can go wrong with scattered points, or deserves a word. Lengths and points are in model units.
