@@ -261,10 +261,13 @@ fn surely_tall(
     let spot = Spot { p: jet.p, dx: jet.du, dy: jet.dv };
     let normal = spot.normal();
     let Some(along) = along.reject_from_normalized(normal).try_normalize() else { return from };
-    let aside = normal.cross(along) + along * shear;
     let closed = turning(surface);
     let inside = |uv: DVec2| surface.is_flat() || (closed.0 || (0.0..=1.0).contains(&uv.x)) && (closed.1 || (0.0..=1.0).contains(&uv.y));
     let point = |uv: DVec2| surface.point_by(quick, uv.x, uv.y);
+    // Over the line of the base, however far along it the apex leans.
+    let across = normal.cross(along);
+    let aside = across + along * shear;
+    let height = |uv: DVec2| (jet.du * (uv.x - at.x) + jet.dv * (uv.y - at.y)).dot(across).abs();
     let (mut h, least) = (from, (SMALL * limit).min(from));
     for way in [aside, -aside] {
         for k in 0..GUESSES + tries {
@@ -277,7 +280,7 @@ fn surely_tall(
                 DVec2::new(if closed.0 { uv.x } else { uv.x.clamp(0.0, 1.0) }, if closed.1 { uv.y } else { uv.y.clamp(0.0, 1.0) })
             };
             let kept = hold(c);
-            let out = if held { kept.distance(at) < LOW * c.distance(at) } else { !inside(c) };
+            let out = if held { height(kept) < LOW * height(c) } else { !inside(c) };
             if out {
                 break;
             }

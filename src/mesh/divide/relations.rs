@@ -1,5 +1,7 @@
 //! The faces as equations between counts, and what their contradictions are called.
 
+use std::collections::BTreeMap;
+
 use crate::base::fault::{Fault, Result};
 use crate::base::origin::Origin;
 use crate::base::tolerance::WHOLE_NUMBER;
@@ -10,6 +12,7 @@ use crate::mesh::divide::verdict::Verdict;
 use crate::mesh::request::fault::{MeshFault, MeshLimit};
 use crate::mesh::request::input::Input;
 use crate::mesh::request::methods::Elements;
+use crate::mesh::request::plan::Plan;
 use crate::mesh::size::sizing::{Decision, MOST, Sizing};
 
 /// A direction of a face as an unknown: what its rows want.
@@ -186,9 +189,10 @@ impl Relations {
             Conflict::Odd { written: by, needs } => {
                 let at = layout.point(*needs, 0.5);
                 let on = |f: &&Face| f.takes_quads() && f.segments().any(|s| s == *needs);
-                let surface =
-                    layout.faces.iter().find(on).map_or(Origin::NONE, |f| input.model.surfaces[f.surface.index()].surface.origin());
-                MeshFault::OddCount { count: by.map_or((0, Origin::NONE), written), surface, at }.into()
+                let face = layout.faces.iter().find(on);
+                let surface = face.map_or(Origin::NONE, |f| input.model.surfaces[f.surface.index()].surface.origin());
+                let count = face.and_then(|face| odd_rule(plan, sizing, face)).or_else(|| by.map(written)).unwrap_or((0, Origin::NONE));
+                MeshFault::OddCount { count, surface, at }.into()
             }
             Conflict::TooCoarse { written: by, needs, least } => self.too_coarse(input, layout, written(*by), (*needs, *least)),
         }
@@ -217,4 +221,14 @@ impl Relations {
         let at = crate::mesh::border::layout::middle(input, face);
         MeshFault::NotReached { limit, says: says.unwrap_or(input.plan.origin), surface, reached: verdicts[worst].reached, at }.into()
     }
+}
+
+/// The first rule whose written count is odd and gives the border of a face an odd number of steps.
+fn odd_rule(plan: &Plan, sizing: &Sizing, face: &Face) -> Option<(u32, Origin)> {
+    let mut steps: BTreeMap<usize, u32> = BTreeMap::new();
+    for (count, rule) in face.segments().filter_map(|segment| sizing.decisions.get(segment)?.count) {
+        *steps.entry(rule).or_default() += count;
+    }
+    let odd = steps.into_iter().filter(|(_, steps)| steps % 2 == 1);
+    odd.filter_map(|(rule, _)| plan.rules.get(rule)?.settings.count).find(|written| written.0 % 2 == 1)
 }

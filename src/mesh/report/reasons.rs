@@ -96,11 +96,12 @@ fn cause(input: &Input, why: Why) -> String {
     }
 }
 
-/// "; steps 0.05 to 0.9: 80 % by size 0.05 near (5, 3, 0), 20 % by the size" of a segment whose steps vary.
+/// "; lengths of 0.05 to 0.9 asked for: 80 % by size 0.05 near (5, 3, 0), 20 % by the size" of a segment whose steps vary; a limit or a
+/// written count may make the steps themselves shorter.
 pub fn of_spacing(input: &Input, spacing: &BorderSpacing) -> String {
     let part = |(why, share): (Why, f64)| format!("{:.0} % by {}", 100.0 * share, cause(input, why));
     let parts: Vec<String> = spacing.shares().into_iter().map(part).collect();
-    format!("; steps {:.3} to {:.3}: {}", spacing.least(), spacing.most(), parts.join(", "))
+    format!("; lengths of {:.3} to {:.3} asked for: {}", spacing.least(), spacing.most(), parts.join(", "))
 }
 
 /// "; 40 cells, 12 crossed by borders, marks 0 1 2 right at 30 of 31 corners" of a face between lines of constant u and v.

@@ -161,10 +161,12 @@ impl Sources {
         self.search(p, most, inside).map_or(most, |found| found.size)
     }
 
-    /// Whether the size of a source holds all the way between two points (what it stands for is convex).
-    pub fn holds(&self, item: u32, a: DVec3, b: DVec3) -> bool {
+    /// Whether the size of a source holds all the way between two points along a curve of this length: what it stands for is convex, and
+    /// the curve is no further from the chord than the ellipse of that length about its ends.
+    pub fn holds(&self, item: u32, (a, b): (DVec3, DVec3), length: f64) -> bool {
         let source = &self.items[item as usize];
-        source.size == self.least && [a, b].iter().all(|p| source.body.distance(*p) <= source.radius)
+        let aside = 0.5 * (length * length - a.distance_squared(b)).max(0.0).sqrt();
+        source.size == self.least && [a, b].iter().all(|p| source.body.distance(*p) + aside <= source.radius)
     }
 
     fn search(&self, p: DVec3, most: f64, value: impl Fn(&Source) -> f64) -> Option<Least> {

@@ -494,7 +494,7 @@ impl Sampler<'_> {
         if left == 0 || settled || gap <= APART * a.length.min(b.length) || self.made.at.len() >= MOST_PLACES {
             return;
         }
-        if a.item == b.item && a.item.is_some_and(|item| self.sources.holds(item, a.p, b.p)) {
+        if a.item == b.item && a.item.is_some_and(|item| self.sources.holds(item, (a.p, b.p), gap)) {
             return;
         }
         let middle = self.place(0.5 * (a.f + b.f));

@@ -39,26 +39,34 @@ impl<'a> Longest<'a> {
         longest
     }
 
-    /// Sides inside may be longer near long steps of the border, less so by `slope` away from them: quads cannot get shorter
-    /// from one row to the next at once.
+    /// Sides inside may be longer near steps of the border that are longer than is asked for there (a written count), less so by `slope`
+    /// away from them: elements cannot get shorter from one row to the next at once.
     pub(crate) fn graded(mut self, outline: &Outline, slope: f64) -> Self {
         let step = |edge: [u32; 2]| {
             let [a, b] = edge.map(|n| outline.p[n as usize]);
             let most = LONGEST * outline.length(edge);
-            (most > self.inside).then_some(Source { body: Body::Segment(a, b), radius: 0.0, size: -most, steep: 1.0, tag: 0 })
+            let is_long = most > self.asked(0.5 * (a + b));
+            is_long.then_some(Source { body: Body::Segment(a, b), radius: 0.0, size: -most, steep: 1.0, tag: 0 })
         };
-        if self.rules.is_empty() {
-            self.steps = Sources::new(outline.edges().filter_map(step).collect(), slope);
+        self.steps = Sources::new(outline.edges().filter_map(step).collect(), slope);
+        if !self.rules.is_empty() {
+            let there: Vec<f64> = outline.p.iter().map(|p| self.there(*p)).collect();
+            self.at_border.iter_mut().zip(there).for_each(|(most, there)| *most = most.max(there));
         }
         self
     }
 
-    fn there(&self, p: DVec3) -> f64 {
+    /// How long sides at a place may be by the sizes that are asked for.
+    fn asked(&self, p: DVec3) -> f64 {
         if self.rules.is_empty() {
-            return -self.steps.at(p, -self.inside);
+            return self.inside;
         }
         let share = LONGEST * (1.0 + WHOLE_NUMBER);
         share * self.rules.plateau(p, self.inside / share)
+    }
+
+    fn there(&self, p: DVec3) -> f64 {
+        -self.steps.at(p, -self.asked(p))
     }
 
     /// How long sides at a node may be, given the points of all nodes.
