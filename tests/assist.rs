@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use lofting::lang::assist::{About, Known, Script, told};
+use lofting::lang::assist::{About, Known, Script, hover_text};
 
 /// Longest time that one place may take.
 const LONGEST: Duration = Duration::from_millis(50);
@@ -42,7 +42,7 @@ fn tells(text: &str, at: usize) -> String {
     let known = Known::new();
     let words = match script(text, &known).hover(at) {
         Some(About::Words(words)) => words,
-        Some(About::Declared { name, line, docs }) => format!("{}\n(a name: {name})", told(&line, &docs)),
+        Some(About::Declared { name, line, docs }) => format!("{}\n(a name: {name})", hover_text(&line, &docs)),
         None => return "nothing".to_owned(),
     };
     let lines: Vec<&str> = words.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with("```")).collect();

@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use glam::DVec2;
-use lofting::mesh::verify::extent::{Extent, Place, agrees, inside, left_out};
+use lofting::mesh::verify::covered_area::{CoveredArea, Place, agrees, inside, left_out};
 use lofting::session::disk::{Disk, Outputs};
 use lofting::session::guard::guarded;
 
@@ -153,7 +153,7 @@ fn covered_square() -> (Vec<DVec2>, Vec<[u32; 3]>, Vec<Vec<Place>>) {
 fn elements_that_cover_another_part_are_seen() {
     let (places, whole, loops) = covered_square();
     let cover = |places: &[DVec2], triangles: &[[u32; 3]]| {
-        let mut covered = Extent::default();
+        let mut covered = CoveredArea::default();
         triangles.iter().for_each(|t| covered.add(places[t[0] as usize], places[t[1] as usize], places[t[2] as usize]));
         covered
     };
@@ -225,7 +225,7 @@ fn caps_that_are_broken_are_seen() {
     for quads in [false, true] {
         let whole = cap(quads);
         let look = |elements: &[Vec<u32>], uv: &[(f64, f64)]| {
-            let mut covered = Extent::default();
+            let mut covered = CoveredArea::default();
             for e in elements {
                 let at = |k: usize| DVec2::from(uv[e[k] as usize]);
                 if e.len() == 3 { covered.add(at(0), at(1), at(2)) } else { covered.add_quad([at(0), at(1), at(2), at(3)]) }

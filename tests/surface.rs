@@ -135,7 +135,7 @@ fn four_lines_span_the_bilinear_patch() {
             close(grid[j * 4 + i], exact, 1e-14, "grid");
         }
     }
-    assert!(surface.review(&tolerance()).is_empty());
+    assert!(surface.validate(&tolerance()).is_empty());
 }
 
 /// The surface over chains, its flow found from their meetings.
@@ -193,7 +193,7 @@ fn a_named_pole_gives_the_degenerate_trilateral() {
         assert!(surface.normal(u, 0.0).dot(z).abs() > 1.0 - 1e-12);
     }
     assert!(matches!(surface.side(0), Side::Pole(p) if p == z));
-    assert!(surface.review(&tolerance()).is_empty());
+    assert!(surface.validate(&tolerance()).is_empty());
     derivatives(&surface);
 }
 
@@ -259,7 +259,7 @@ fn the_two_surfaces_of_figure_2_2() {
             assert_eq!(own.len(), expected.len(), "{key} {direction}");
             assert!(own.iter().zip(&expected).all(|(a, b)| (a - b).abs() < 1e-12), "{key} {own:?}");
         }
-        assert!(surface.review(&tolerance()).is_empty());
+        assert!(surface.validate(&tolerance()).is_empty());
         derivatives(surface);
     }
     // The kink of the border is met from the side that is asked for.
@@ -338,7 +338,7 @@ fn sweeps_have_the_exact_nets() {
     for s in [&torus, &sphere, &cone] {
         derivatives(s);
         derivatives(&s.flipped());
-        assert!(s.review(&tolerance()).is_empty());
+        assert!(s.validate(&tolerance()).is_empty());
     }
     // A cone's tip has no tangent plane: the mean of the normals is its axis.
     assert!(cone.normal(0.3, 0.0).dot(DVec3::Z).abs() > 1.0 - 1e-12);
@@ -606,7 +606,7 @@ fn planes_between_curves() {
     let half = slab(&half).unwrap().0;
     assert!(matches!((half.side(1), half.side(3)), (Side::Pole(_), Side::Pole(_))));
     close(half.normal(0.5, 0.5), DVec3::Z, 1e-12, "normal");
-    assert!(half.review(&t).is_empty());
+    assert!(half.validate(&t).is_empty());
 
     let mut lifted = four.to_vec();
     lifted[2] = straight([0.0, 2.0, 0.5], [4.0, 3.0, 0.9]);

@@ -54,7 +54,7 @@ impl BoxTree {
 
     /// The items of [`BoxTree::query`], ascending.
     pub fn near(&self, bbox: &Box3, margin: f64) -> Vec<usize> {
-        job::look();
+        job::poll();
         let mut found = Vec::new();
         self.query(bbox, margin, |k| found.push(k));
         found.sort_unstable();
@@ -90,7 +90,7 @@ impl BoxTree {
             stack.extend((a..n).map(|b| (top, a, b)));
         }
         while let Some((level, a, b)) = stack.pop() {
-            job::look();
+            job::poll();
             let boxes = &self.levels[level];
             if a != b && !boxes[a].touches(&boxes[b], margin) {
                 continue;
@@ -122,7 +122,7 @@ impl BoxTree {
             stack.extend((0..other.levels[other_top].len()).map(|b| (top, a, other_top, b)));
         }
         while let Some((level, a, other_level, b)) = stack.pop() {
-            job::look();
+            job::poll();
             if !self.levels[level][a].touches(&other.levels[other_level][b], margin) {
                 continue;
             }

@@ -50,7 +50,7 @@ impl StableHasher {
 
     /// Takes in content.
     pub fn with(mut self, content: &(impl StableHash + ?Sized)) -> Self {
-        content.tell(&mut self);
+        content.hash_into(&mut self);
         self
     }
 
@@ -64,7 +64,7 @@ impl StableHasher {
 /// part of it, nor what is worked out from the rest when it is first asked for.
 pub trait StableHash {
     /// Tells all of it.
-    fn tell(&self, to: &mut StableHasher);
+    fn hash_into(&self, to: &mut StableHasher);
 }
 
 /// Implements [`StableHash`] for a structure field by field. Every field must be named, as content or behind `but` as one that
@@ -74,9 +74,9 @@ pub trait StableHash {
 macro_rules! content {
     ($name:ty { $($field:ident),* $(,)? } $(but { $($idle:ident),* $(,)? })?) => {
         impl $crate::base::digest::StableHash for $name {
-            fn tell(&self, to: &mut $crate::base::digest::StableHasher) {
+            fn hash_into(&self, to: &mut $crate::base::digest::StableHasher) {
                 let Self { $($field,)* $($($idle: _,)*)? } = self;
-                $($crate::base::digest::StableHash::tell($field, to);)*
+                $($crate::base::digest::StableHash::hash_into($field, to);)*
             }
         }
     };
@@ -88,138 +88,138 @@ macro_rules! content {
 macro_rules! content_of_word {
     ($($name:ty),* $(,)?) => {
         $(impl $crate::base::digest::StableHash for $name {
-            fn tell(&self, to: &mut $crate::base::digest::StableHasher) {
-                $crate::base::digest::StableHash::tell(&(*self as u64), to);
+            fn hash_into(&self, to: &mut $crate::base::digest::StableHasher) {
+                $crate::base::digest::StableHash::hash_into(&(*self as u64), to);
             }
         })*
     };
 }
 
 impl StableHash for u64 {
-    fn tell(&self, to: &mut StableHasher) {
+    fn hash_into(&self, to: &mut StableHasher) {
         to.0.write_u64(*self);
     }
 }
 
 impl StableHash for u32 {
-    fn tell(&self, to: &mut StableHasher) {
-        u64::from(*self).tell(to);
+    fn hash_into(&self, to: &mut StableHasher) {
+        u64::from(*self).hash_into(to);
     }
 }
 
 impl StableHash for u8 {
-    fn tell(&self, to: &mut StableHasher) {
-        u64::from(*self).tell(to);
+    fn hash_into(&self, to: &mut StableHasher) {
+        u64::from(*self).hash_into(to);
     }
 }
 
 impl StableHash for usize {
-    fn tell(&self, to: &mut StableHasher) {
-        (*self as u64).tell(to);
+    fn hash_into(&self, to: &mut StableHasher) {
+        (*self as u64).hash_into(to);
     }
 }
 
 impl StableHash for bool {
-    fn tell(&self, to: &mut StableHasher) {
-        u64::from(*self).tell(to);
+    fn hash_into(&self, to: &mut StableHasher) {
+        u64::from(*self).hash_into(to);
     }
 }
 
 impl StableHash for f64 {
-    fn tell(&self, to: &mut StableHasher) {
-        self.to_bits().tell(to);
+    fn hash_into(&self, to: &mut StableHasher) {
+        self.to_bits().hash_into(to);
     }
 }
 
 impl StableHash for str {
-    fn tell(&self, to: &mut StableHasher) {
+    fn hash_into(&self, to: &mut StableHasher) {
         to.0.write_u64(self.len() as u64);
         to.0.write(self.as_bytes());
     }
 }
 
 impl StableHash for String {
-    fn tell(&self, to: &mut StableHasher) {
-        self.as_str().tell(to);
+    fn hash_into(&self, to: &mut StableHasher) {
+        self.as_str().hash_into(to);
     }
 }
 
 impl StableHash for Digest {
-    fn tell(&self, to: &mut StableHasher) {
+    fn hash_into(&self, to: &mut StableHasher) {
         to.0.write(&self.0.to_le_bytes());
     }
 }
 
 impl StableHash for DVec3 {
-    fn tell(&self, to: &mut StableHasher) {
-        self.to_array().iter().for_each(|x| x.tell(to));
+    fn hash_into(&self, to: &mut StableHasher) {
+        self.to_array().iter().for_each(|x| x.hash_into(to));
     }
 }
 
 impl StableHash for DVec4 {
-    fn tell(&self, to: &mut StableHasher) {
-        self.to_array().iter().for_each(|x| x.tell(to));
+    fn hash_into(&self, to: &mut StableHasher) {
+        self.to_array().iter().for_each(|x| x.hash_into(to));
     }
 }
 
 impl<T: StableHash + ?Sized> StableHash for &T {
-    fn tell(&self, to: &mut StableHasher) {
-        (**self).tell(to);
+    fn hash_into(&self, to: &mut StableHasher) {
+        (**self).hash_into(to);
     }
 }
 
 impl<T: StableHash + ?Sized> StableHash for Box<T> {
-    fn tell(&self, to: &mut StableHasher) {
-        (**self).tell(to);
+    fn hash_into(&self, to: &mut StableHasher) {
+        (**self).hash_into(to);
     }
 }
 
 impl<T: StableHash + ?Sized> StableHash for std::sync::Arc<T> {
-    fn tell(&self, to: &mut StableHasher) {
-        (**self).tell(to);
+    fn hash_into(&self, to: &mut StableHasher) {
+        (**self).hash_into(to);
     }
 }
 
 impl<T: StableHash> StableHash for Option<T> {
-    fn tell(&self, to: &mut StableHasher) {
-        self.is_some().tell(to);
+    fn hash_into(&self, to: &mut StableHasher) {
+        self.is_some().hash_into(to);
         if let Some(content) = self {
-            content.tell(to);
+            content.hash_into(to);
         }
     }
 }
 
 impl<T: StableHash> StableHash for [T] {
-    fn tell(&self, to: &mut StableHasher) {
-        self.len().tell(to);
-        self.iter().for_each(|content| content.tell(to));
+    fn hash_into(&self, to: &mut StableHasher) {
+        self.len().hash_into(to);
+        self.iter().for_each(|content| content.hash_into(to));
     }
 }
 
 impl<T: StableHash> StableHash for Vec<T> {
-    fn tell(&self, to: &mut StableHasher) {
-        self.as_slice().tell(to);
+    fn hash_into(&self, to: &mut StableHasher) {
+        self.as_slice().hash_into(to);
     }
 }
 
 impl<T: StableHash, const N: usize> StableHash for [T; N] {
-    fn tell(&self, to: &mut StableHasher) {
-        self.iter().for_each(|content| content.tell(to));
+    fn hash_into(&self, to: &mut StableHasher) {
+        self.iter().for_each(|content| content.hash_into(to));
     }
 }
 
 impl<A: StableHash, B: StableHash> StableHash for (A, B) {
-    fn tell(&self, to: &mut StableHasher) {
-        self.0.tell(to);
-        self.1.tell(to);
+    fn hash_into(&self, to: &mut StableHasher) {
+        self.0.hash_into(to);
+        self.1.hash_into(to);
     }
 }
 
 impl<A: StableHash, B: StableHash, C: StableHash> StableHash for (A, B, C) {
-    fn tell(&self, to: &mut StableHasher) {
-        self.0.tell(to);
-        self.1.tell(to);
-        self.2.tell(to);
+    fn hash_into(&self, to: &mut StableHasher) {
+        self.0.hash_into(to);
+        self.1.hash_into(to);
+        self.2.hash_into(to);
     }
 }
 

@@ -147,7 +147,7 @@ pub(super) fn charge(units: u64) {
 /// Goes on unless the job of this thread was cancelled or its run did too much; costs a few nanoseconds. To be called at least every few
 /// milliseconds of work.
 #[inline]
-pub fn look() {
+pub fn poll() {
     if WATCHED.with_borrow(Watched::is_ended) {
         leave();
     }
@@ -166,7 +166,7 @@ pub fn looking<I: IntoIterator>(items: I) -> impl Iterator<Item = I::Item> {
     const ROUNDS: usize = 1024;
     items.into_iter().enumerate().map(|(k, item)| {
         if k % ROUNDS == 0 {
-            look();
+            poll();
         }
         item
     })
@@ -179,7 +179,7 @@ pub fn sort<T: Ord>(items: &mut [T]) {
     items.sort_unstable_by(|a, b| {
         done.set(done.get().wrapping_add(1));
         if done.get().is_multiple_of(COMPARISONS) {
-            look();
+            poll();
         }
         a.cmp(b)
     });
@@ -291,9 +291,9 @@ mod tests {
         });
         assert!(matches!(ended, Err(Fault::Interrupted)));
         // Another job, and none, go on.
-        look();
-        assert!(matches!(Job::new().watch(look), Ok(())));
-        assert!(matches!(job.watch(look), Err(Fault::Interrupted)));
+        poll();
+        assert!(matches!(Job::new().watch(poll), Ok(())));
+        assert!(matches!(job.watch(poll), Err(Fault::Interrupted)));
     }
 
     #[test]

@@ -55,14 +55,14 @@ pub fn map<T: Send>(n: usize, f: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
         if let Some(pool) = pool() {
             let helper = Helper::of_this_thread();
             let item = |_: &mut Entered, k: usize| {
-                job::look();
+                job::poll();
                 f(k)
             };
             return pool.install(|| (0..n).into_par_iter().map_init(|| helper.enter(), item).collect());
         }
     }
     let item = |k: usize| {
-        job::look();
+        job::poll();
         f(k)
     };
     (0..n).map(item).collect()
@@ -82,7 +82,7 @@ pub fn chunks_mut<T: Send>(items: &mut [T], size: usize, f: impl Fn(usize, &mut 
         if let Some(pool) = pool() {
             let helper = Helper::of_this_thread();
             let one = |_: &mut Entered, (k, part): (usize, &mut [T])| {
-                job::look();
+                job::poll();
                 f(k, part);
             };
             pool.install(|| items.par_chunks_mut(size).enumerate().for_each_init(|| helper.enter(), one));
@@ -90,7 +90,7 @@ pub fn chunks_mut<T: Send>(items: &mut [T], size: usize, f: impl Fn(usize, &mut 
         }
     }
     for (k, part) in items.chunks_mut(size).enumerate() {
-        job::look();
+        job::poll();
         f(k, part);
     }
 }

@@ -76,7 +76,7 @@ pub fn integrate(a: f64, b: f64, (relative, absolute): (f64, f64), depth: u32, m
     let (mut total, mut error) = (0.0, 0.0);
     let mut open = vec![(a, b, depth)];
     while let Some((a, b, left)) = open.pop() {
-        job::look();
+        job::poll();
         let panel = kronrod(a, b, &mut f);
         let middle = 0.5 * (a + b);
         if left == 0 || panel.error <= relative * f64::abs(total + panel.integral) + absolute || !(a < middle && middle < b) {

@@ -44,7 +44,7 @@ impl HasPosition for Node {
     fn position(&self) -> Point2<f64> {
         // The only place of ours that a long triangulation comes by: every predicate asks for its points.
         if self.index.is_multiple_of(NODES_PER_LOOK) {
-            job::look();
+            job::poll();
         }
         self.at
     }

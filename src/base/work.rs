@@ -153,7 +153,7 @@ fn settle() {
     if exceeded && !par::is_unwinding() {
         resume_unwind(Box::new(Exceeded));
     }
-    job::look();
+    job::poll();
 }
 
 /// Runs `work` without charging anyone: what is made once for everyone, and what has a budget of its own inside.

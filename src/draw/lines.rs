@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::scene::{Kind, Line};
 use crate::base::par;
 use crate::base::tolerance::Tolerance;
-use crate::model::{Meeting, Model, Stretch, SurfaceId, Track};
+use crate::model::{EdgePiece, Meeting, Model, SurfaceId, Track};
 use crate::network::{Chain, Network};
 
 /// Parts that a smooth piece is looked at in before it may count as straight.
@@ -73,7 +73,7 @@ pub fn borders(
     fine: f64,
     tolerance: &Tolerance,
 ) -> Vec<Line> {
-    let stretches = model.stretches(members, near, network, tolerance);
+    let stretches = model.edge_pieces(members, near, network, tolerance);
     par::map(stretches.len(), |k| Line {
         kind: kind_of(&stretches[k], tolerance),
         points: track(&stretches[k].track, stretches[k].s, fine),
@@ -81,7 +81,7 @@ pub fn borders(
 }
 
 /// What a stretch tells: a fold is a kink, between surfaces and at a seam too.
-fn kind_of(stretch: &Stretch, tolerance: &Tolerance) -> Kind {
+fn kind_of(stretch: &EdgePiece, tolerance: &Tolerance) -> Kind {
     match (stretch.meeting, stretch.turn) {
         (Meeting::Free, _) => Kind::Free,
         (Meeting::Crowded, _) => Kind::Crowded,
@@ -106,9 +106,9 @@ const COMPARED: usize = 33;
 impl Folds {
     /// Of some surfaces; borders up to `near` apart meet.
     pub fn new((model, network): (&Model, &Network), (members, near): (&BTreeSet<SurfaceId>, f64), tolerance: &Tolerance) -> Self {
-        let stretches = model.stretches(members, near, network, tolerance);
+        let stretches = model.edge_pieces(members, near, network, tolerance);
         let name = |id: SurfaceId| model.surfaces[id.index()].name.clone();
-        let border = |stretch: &Stretch| {
+        let border = |stretch: &EdgePiece| {
             let [a, b] = stretch.surfaces.as_slice() else { return None };
             let (a, b) = (name(*a).min(name(*b)), name(*a).max(name(*b)));
             let place = |k: usize| stretch.s.0 + (stretch.s.1 - stretch.s.0) * k as f64 / (COMPARED - 1) as f64;

@@ -52,7 +52,7 @@ fn made(curves: Vec<Curve>, tolerance: &Tolerance, make: impl FnOnce(&[Chain]) -
     curves.iter().for_each(|curve| names.add(curve.origin(), curve.name()));
     let say = Speaker { names: &names, unit: None, tolerance: Some(*tolerance) };
     let chains: Vec<Chain> = curves.iter().map(|curve| curve.chain.clone()).collect();
-    let work = || make(&chains).map(|(surface, notes)| ([notes, surface.review(tolerance)].concat(), surface));
+    let work = || make(&chains).map(|(surface, notes)| ([notes, surface.validate(tolerance)].concat(), surface));
     let too_much = |Exceeded| Err(ValueFault::StageWork { what: "the surface" }.into());
     let (notes, surface) = Budget::new(CALL_WORK).within(work).unwrap_or_else(too_much).map_err(|fault| Error::of_fault(&fault, &say))?;
     let notes = notes.iter().map(|note| row(note, &say)).collect();

@@ -87,7 +87,7 @@ impl Model {
         }));
         for (surface, other) in &shell.surfaces {
             for patch in self.patches_of(*surface).filter(|p| slivers.binary_search(p).is_err()) {
-                job::look();
+                job::poll();
                 let mut loops = Vec::new();
                 for sides in self.sides_by_loop(patch) {
                     let mut around = BodyLoop::new();

@@ -226,7 +226,7 @@ fn follow(tiles: &Tiles, border: &Border, steps: &[(usize, (f64, f64))], ways: &
         }
         let (which, (mut t, end)) = steps[k];
         while t < end {
-            job::look();
+            job::poll();
             let Some((there, side)) = leaves(tiles, border, at, which, (t, end)) else {
                 parts.push((which, (t, end)));
                 break;

@@ -56,7 +56,7 @@ pub fn stations(part: &Part, ends: (usize, usize), index: &Index) -> Vec<(f64, u
     index.tree.query(&Box3::of(samples.iter().map(|(_, p)| *p)), reach, |n| near.push(n));
     near.sort_unstable();
     for n in near {
-        job::look();
+        job::poll();
         let point = index.points[n];
         for (s, distance) in feet(&part.track, &samples, point.point, reach) {
             let allowed = part.near.min(point.reach);

@@ -30,7 +30,7 @@ pub fn gather(points: &[Station], least: f64) -> Vec<usize> {
     order.sort_by(|&a, &b| compare_points(points[a].point, points[b].point).then(a.cmp(&b)));
     let mut open = vec![(order, 1.0)];
     while let Some((ids, share)) = open.pop() {
-        job::look();
+        job::poll();
         let groups = linked(points, &ids, share, least);
         for group in groups {
             let reach = group.iter().map(|n| points[*n].reach).fold(0.0, f64::max);
@@ -63,7 +63,7 @@ fn linked(points: &[Station], ids: &[usize], share: f64, least: f64) -> Vec<Vec<
     let boxes: Vec<Box3> = ids.iter().map(|a| Box3::of([points[*a].point])).collect();
     let tree = BoxTree::build(&boxes);
     for (n, &a) in ids.iter().enumerate() {
-        job::look();
+        job::poll();
         let reach = (share * points[a].reach).max(least);
         tree.query(&boxes[n], reach, |m| {
             // Each pair once, and what is one already is not looked at again.

@@ -156,7 +156,7 @@ pub(super) fn glue(surfaces: Vec<Named>, pieces: &[Pieces], network: &Network, t
     let mut patches = Vec::new();
     let mut base = 0;
     for (index, part) in pieces.iter().enumerate() {
-        job::look();
+        job::poll();
         let vertex = |corner: usize| VertexId::at(group[base + corner]);
         let ids: Vec<_> = part.edges.iter().map(|raw| table.add(raw, (vertex(raw.ends.0), vertex(raw.ends.1)))).collect();
         let around = surfaces[index].surface.domain() == Domain::Loop;

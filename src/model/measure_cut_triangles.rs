@@ -36,7 +36,7 @@ pub(super) fn cut_triangles_integral<const N: usize>(
     add(triangles_integral(surface, &left.into_iter().copied().collect::<Vec<_>>(), accuracy, f), 1.0);
     add(triangles_integral(surface, &right.into_iter().copied().collect::<Vec<_>>(), accuracy, f), -1.0);
     let cone = |arc: &Arc, rule: &[(f64, f64)]| -> (Sums<N>, Sums<N>) {
-        job::look();
+        job::poll();
         let (mut sum, mut size) = ([0.0; N], [0.0; N]);
         let half = 0.5 * (arc.t.1 - arc.t.0);
         for (t, wt) in rule {

@@ -107,7 +107,7 @@ pub fn flat_integral<const N: usize>(
     }
     let mut open: Vec<((usize, f64, f64), u32)> = runs.iter().rev().map(|run| (*run, 0)).collect();
     while let Some((run, depth)) = open.pop() {
-        job::look();
+        job::poll();
         let (rough, value) = (round(&rules[0], run, false), round(&rules[1], run, false));
         let apart: Sums<N> = std::array::from_fn(|i| (value[i] - rough[i]).abs());
         if depth == MAX_DEPTH || small(&apart, &scale.map(|s| share * s)) {

@@ -91,7 +91,7 @@ pub fn integral<const N: usize>(
     while !open.is_empty() {
         let mut rough = Vec::new();
         for (cell, start, limit) in open {
-            job::look();
+            job::poll();
             let (value, apart) = measured(&rules, &start, &limit, |k| product(surface, &cell, &rules[k], f));
             if small(&apart, &limit) || cell.depth >= MAX_DEPTH {
                 add(&mut sum, &value);
@@ -220,7 +220,7 @@ fn products<const N: usize>(
     for (n, band) in vs.chunks(high).enumerate() {
         let ys = on(band);
         for (m, part) in us.chunks(wide).enumerate() {
-            job::look();
+            job::poll();
             let xs = on(part);
             let jets = surface.square_jets(&xs, &ys);
             for (j, y) in band.iter().enumerate() {

@@ -37,7 +37,7 @@ impl<const N: usize> Strips<N> {
         }
         let mut running = Vec::with_capacity((vs.len() - 1) * us.len());
         for strip in vs.windows(2) {
-            job::look();
+            job::poll();
             let place = |m: usize| 0.5 * (strip[0] + strip[1]) + 0.5 * (strip[1] - strip[0]) * node(m);
             let rows: Vec<Vec<Sums<N>>> = (0..RUNNING).map(|m| sums_along(&us, rule, &|u| value(u, place(m)))).collect();
             running.extend((0..us.len()).map(|i| std::array::from_fn(|n| terms(&|m| rows[m][i][n]))));

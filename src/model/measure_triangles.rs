@@ -23,7 +23,7 @@ pub fn triangles_integral<const N: usize>(
     let rules = ORDERS.map(gauss_legendre);
     // The square (x, y) ↦ a + x (b − a) + x y (c − b) covers a triangle; its places keep off the sides.
     let over = |[a, b, c]: &[DVec2; 3], rule: &[(f64, f64)]| -> (Sums<N>, Sums<N>) {
-        job::look();
+        job::poll();
         let twice = (*b - *a).perp_dot(*c - *a).abs();
         let (mut sum, mut size) = ([0.0; N], [0.0; N]);
         for (x, wx) in rule {

@@ -85,7 +85,7 @@ pub fn trimmed_integral<const N: usize>(
     let part = |low: f64, high: f64, v: f64| -> Sums<N> {
         let mut sum = [0.0; N];
         for (x, w) in &across {
-            job::look();
+            job::poll();
             let u = 0.5 * (low + high) + 0.5 * (high - low) * x;
             let value = f(&jet(u, v));
             (0..N).for_each(|i| sum[i] += 0.5 * (high - low) * w * value[i]);
@@ -165,7 +165,7 @@ pub fn trimmed_integral<const N: usize>(
     let mut open: Vec<(Run, Met<N>)> = open.into_iter().zip(first).collect();
     let (mut sum, mut error) = ([0.0; N], [0.0; N]);
     while let Some((next, met)) = open.pop() {
-        job::look();
+        job::poll();
         let few = even(met.within).then(|| {
             let value = run(&next, &rules[0][1], false).sum;
             (value, apart(&value, &met.sum))

@@ -105,7 +105,7 @@ impl Moments {
         let share = MEASURE_ACCURACY * whole / open.len().max(1) as f64;
         let mut sum = [0.0; N];
         while let Some((part, depth)) = open.pop() {
-            job::look();
+            job::poll();
             const MAX_DEPTH: u32 = 20;
             let (rough, fine) = (rule_on(&rules[0], part), rule_on(&rules[1], part));
             if depth == MAX_DEPTH || rough.iter().zip(&fine).all(|(a, b)| (a - b).abs() <= share) {

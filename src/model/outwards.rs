@@ -180,7 +180,7 @@ impl Skin {
         let mut out = 0_i32;
         for (surface, other) in &self.faces {
             for hit in with_curve(&ray, std::slice::from_ref(surface), tolerance).ok()? {
-                job::look();
+                job::poll();
                 let normal = surface.normal(hit.uv.0, hit.uv.1);
                 let sine = way.dot(normal) * if *other { -1.0 } else { 1.0 };
                 if hit.shared_to.is_some() || sine.abs() < CROSSES {

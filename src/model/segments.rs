@@ -115,7 +115,7 @@ impl Stops {
         let mut points = anchors.to_vec();
         let mut first = Vec::with_capacity(parts.len());
         for part in parts {
-            job::look();
+            job::poll();
             first.push(points.len());
             let stops = [0.0, part.track.length()].into_iter().chain(part.cuts.iter().copied());
             points.extend(stops.map(|s| Station { point: part.track.point(s), reach: part.near }));
@@ -193,7 +193,7 @@ impl Joiner<'_> {
         let mut raw = Vec::new();
         for (part, stops) in stations.iter().enumerate() {
             for w in stops.windows(2) {
-                job::look();
+                job::poll();
                 raw.push(Raw { part, ends: (w[0].1, w[1].1), s: (w[0].0, w[1].0) });
             }
         }

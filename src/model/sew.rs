@@ -109,7 +109,7 @@ impl Seams<'_> {
     }
 
     /// N712 for edges that became a corner and faces that became an edge, N513 where borders apart became one.
-    pub fn tell(&self, request: &ShellRequest, slivers: &[PatchId], tolerance: &Tolerance, sink: &mut Vec<Fault>) {
+    pub fn report(&self, request: &ShellRequest, slivers: &[PatchId], tolerance: &Tolerance, sink: &mut Vec<Fault>) {
         let parts = &self.joins.parts;
         let gone = |n: &usize| self.joins.pieces.of_track[*n].is_empty() && parts[*n].track.length() > tolerance.point;
         let short: Vec<usize> = (0..parts.len()).filter(gone).collect();

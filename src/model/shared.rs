@@ -181,7 +181,7 @@ impl Model {
         let slivers = self.slivers(&members, (&edges, &joins.pieces), near);
         let mut faces: Vec<PatchId> = Vec::new();
         for surface in surfaces {
-            job::look();
+            job::poll();
             let own: Vec<PatchId> = self.patches_of(*surface).filter(|p| slivers.binary_search(p).is_err()).collect();
             if own.first().is_some_and(|p| !faces.contains(p)) {
                 faces.extend(own);
@@ -239,7 +239,7 @@ impl<'a> Sharing<'a> {
         let mut found = SharedEdges::default();
         let mut known: BTreeMap<usize, usize> = BTreeMap::new();
         for face in faces {
-            job::look();
+            job::poll();
             let mut border = Vec::new();
             for (edge, against) in self.model.border_of(*face) {
                 let Ok(track) = self.edges.binary_search(&edge) else { continue };

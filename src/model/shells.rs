@@ -61,7 +61,7 @@ impl Model {
             self.manifold(request, &joins, &usages)?;
         }
         let sides = self.orient(request, &joins, (&usages, &slivers), tolerance, sink)?;
-        seams.tell(request, &slivers, tolerance, sink);
+        seams.report(request, &slivers, tolerance, sink);
         if let Some(longest) = free.iter().copied().max_by(|a, b| pieces.segments[*a].length().total_cmp(&pieces.segments[*b].length())) {
             let length = free.iter().map(|a| pieces.segments[*a].length()).sum();
             let at = joins.middle(longest);

@@ -58,7 +58,7 @@ impl Trace {
         // A short span between two knots may be run through so fast that no sample of a longer stretch sees it.
         let mut open: Vec<(f64, f64, u32)> = stops.windows(2).rev().map(|w| (w[0], w[1], DEPTH)).collect();
         while let Some((a, b, left)) = open.pop() {
-            job::look();
+            job::poll();
             let panel = quadrature::kronrod(a, b, |t| trace.speed(t));
             if left > 0 && trace.panels.len() + open.len() < STRETCHES && panel.error > MEASURE_ACCURACY * scale.max(trace.length) {
                 let middle = 0.5 * (a + b);
@@ -126,7 +126,7 @@ impl Trace {
         let whole = self.panels.get(k + 1).map_or(self.length, |next| next.s) - panel.s;
         let (mut low, mut high, mut x) = (-1.0, 1.0, (2.0 * (s - panel.s) / whole - 1.0).clamp(-1.0, 1.0));
         for _ in 0..STEPS {
-            job::look();
+            job::poll();
             let (value, slope) = quadrature::chebyshev(&panel.running, x);
             let miss = value - wanted;
             if miss > 0.0 {
@@ -164,10 +164,10 @@ pub enum Track {
 }
 
 impl StableHash for Track {
-    fn tell(&self, to: &mut StableHasher) {
+    fn hash_into(&self, to: &mut StableHasher) {
         match self {
-            Self::Links { chains, starts, span } => (0u8, (chains, starts, *span)).tell(to),
-            Self::Iso(trace) => (1u8, trace).tell(to),
+            Self::Links { chains, starts, span } => (0u8, (chains, starts, *span)).hash_into(to),
+            Self::Iso(trace) => (1u8, trace).hash_into(to),
         }
     }
 }

@@ -85,8 +85,8 @@ struct Inner {
 crate::content!(Inner { runs, joints, length } but { rates, straight, origin });
 
 impl StableHash for Chain {
-    fn tell(&self, to: &mut StableHasher) {
-        self.0.tell(to);
+    fn hash_into(&self, to: &mut StableHasher) {
+        self.0.hash_into(to);
     }
 }
 

@@ -18,7 +18,7 @@ pub fn cluster(points: &[DVec3], reach: f64) -> Vec<u32> {
     // Ranges of `order`, the axis to sort them by, and how many axes in a row did not cut them.
     let mut stack = vec![(0, order.len(), 0, 0)];
     while let Some((from, to, axis, uncut)) = stack.pop() {
-        job::look();
+        job::poll();
         let group = &mut order[from..to];
         if group.len() <= SMALL {
             join_close(points, group, reach, &mut sets);

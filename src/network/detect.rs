@@ -67,7 +67,7 @@ pub fn detect_grid(grid: &Grid, options: &FlowOptions) -> Result<Flow, FlowFault
         }
     };
     for division in divisions(grid, options, &mut offer) {
-        job::look();
+        job::poll();
         match lay_out(&Layout { grid, division: &division, options }) {
             Ok(flow) => return Ok(flow),
             Err((score, fault)) => offer(score, fault),
@@ -222,7 +222,7 @@ fn colours(n: usize, edges: &[(usize, usize)], without: Option<(usize, usize)>) 
     let mut colour: Vec<Option<usize>> = vec![None; n];
     let mut parts = Vec::new();
     for first in 0..n {
-        job::look();
+        job::poll();
         if colour[first].is_some() {
             continue;
         }
@@ -261,7 +261,7 @@ fn combinations(n: usize, parts: &[[Vec<usize>; 2]], options: &FlowOptions) -> V
     let free = parts.len().saturating_sub(1).min(PARTS);
     let mut found = Vec::new();
     for flips in 0..1_usize << free {
-        job::look();
+        job::poll();
         let mut families = [Vec::with_capacity(n), Vec::with_capacity(n)];
         for (k, part) in parts.iter().enumerate() {
             let flip = k > 0 && k <= free && flips >> (k - 1) & 1 == 1;

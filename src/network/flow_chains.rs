@@ -179,7 +179,7 @@ fn ends_that_miss(chains: &[Chain], lists: &[NodeList], hints: &FlowOptions, tol
         |lists: &[NodeList], k: usize, last: bool| if last { lists[k].nodes.last().copied() } else { lists[k].nodes.first().copied() };
     let mut misses = Vec::new();
     for a in 0..chains.len() {
-        job::look();
+        job::poll();
         for b in a + 1..chains.len() {
             if !shared(&lists[a], &lists[b]).is_empty() {
                 continue;

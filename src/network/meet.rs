@@ -34,7 +34,7 @@ pub fn meet(a: &Chain, b: &Chain, tolerance: &Tolerance) -> Result<Vec<Meeting>>
     }
     for (ka, run_a) in a.runs().iter().enumerate() {
         for (kb, run_b) in b.runs().iter().enumerate() {
-            job::look();
+            job::poll();
             if same_curve(&run_a.curve, &run_b.curve) {
                 on_one_curve((a, ka), (b, kb), tolerance, &mut found);
             } else if run_a.curve.bbox().touches(&run_b.curve.bbox(), tolerance.point) {
@@ -84,7 +84,7 @@ pub fn closest_points(a: &Chain, b: &Chain) -> (DVec3, DVec3) {
     }
     for piece_a in a.runs().iter().flat_map(super::slice::pieces) {
         for piece_b in b.runs().iter().flat_map(super::slice::pieces) {
-            job::look();
+            job::poll();
             let (ta, tb, _) = closest_pair(&piece_a, &piece_b);
             offer((piece_a.point(ta), piece_b.point(tb)));
         }

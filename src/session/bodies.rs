@@ -38,7 +38,7 @@ pub fn apart(plan: &Plan, bodies: &[BTreeSet<SurfaceId>], scene: &Scene, toleran
     }
     if place.len() > of_body.len() {
         let near = plan.glue.values().fold(tolerance.point, |near, own| near.max(*own));
-        for stretch in scene.model.stretches(&members, near, &scene.network, tolerance) {
+        for stretch in scene.model.edge_pieces(&members, near, &scene.network, tolerance) {
             // Bodies by themselves are not joined.
             if let Some(other) = stretch.surfaces.iter().find(|s| !of_body.contains_key(s)) {
                 stretch.surfaces.iter().for_each(|s| join(&mut parent, place[other], place[s]));

@@ -142,13 +142,13 @@ pub(super) struct Counted<W> {
 
 impl<W: Write> Write for Counted<W> {
     fn write(&mut self, data: &[u8]) -> io::Result<usize> {
-        job::look();
+        job::poll();
         let n = self.inner.write(data)?;
         self.bytes += n as u64;
         Ok(n)
     }
     fn write_all(&mut self, data: &[u8]) -> io::Result<()> {
-        job::look();
+        job::poll();
         self.inner.write_all(data)?;
         self.bytes += data.len() as u64;
         Ok(())

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::document::Document;
 use super::model::{Facts, Seen};
 use crate::base::fault::Severity;
-use crate::lang::assist::told;
+use crate::lang::assist::hover_text;
 use crate::lang::diag::diagnostic::{Diagnostic, FileId, Sources};
 use crate::lang::diag::span::Span;
 use crate::lang::syntax::ast::Keyword;
@@ -119,7 +119,7 @@ pub fn hover(facts: &Facts, document: &Document, name: &str, (line, docs): (&str
         None if current => (line, ""),
         None => (line, "*Not evaluated yet.*"),
     };
-    told(line, &format!("{docs}\n\n{note}"))
+    hover_text(line, &format!("{docs}\n\n{note}"))
 }
 
 /// Takes over what a run told into what was told before it.

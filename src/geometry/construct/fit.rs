@@ -144,7 +144,7 @@ impl<'a> Search<'a> {
         let breaks = (0..=spans).map(|i| length * i as f64 / spans as f64).collect();
         let mut found = self.best(Cubics { breaks, closed: self.closed }, &parameters)?;
         while !self.is_near(&found) {
-            job::look();
+            job::poll();
             let more = finer(&found.cubics.breaks, &found.parameters, &found.off);
             let next = more.map(|breaks| Cubics { breaks, closed: self.closed }).find_map(|cubics| self.best(cubics, &found.parameters));
             found = next?;
@@ -173,7 +173,7 @@ impl<'a> Search<'a> {
         let least = if self.closed { 2 } else { 1 };
         let mut i = 1;
         while i + 1 < found.cubics.breaks.len() && found.cubics.breaks.len() - 1 > least {
-            job::look();
+            job::poll();
             let mut fewer = found.cubics.clone();
             fewer.breaks.remove(i);
             match self.best(fewer, &found.parameters).filter(|other| self.is_near(other)) {

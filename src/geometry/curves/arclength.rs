@@ -48,7 +48,7 @@ impl Lengths {
             let most = table.t.len() + PANELS;
             open.push((span[0], span[1], DEPTH));
             while let Some((a, b, left)) = open.pop() {
-                job::look();
+                job::poll();
                 let mut farthest = 0.0_f64;
                 let panel = kronrod(a, b, |t| {
                     let jet = jet(t);

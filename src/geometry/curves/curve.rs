@@ -125,21 +125,21 @@ crate::content_of_word!(Kind);
 crate::content!(Inner { shape, kind, through } but { origin, lengths, pieces });
 
 impl StableHash for Shape {
-    fn tell(&self, to: &mut StableHasher) {
+    fn hash_into(&self, to: &mut StableHasher) {
         match self {
-            Self::Line(a, b) => (0u8, *a, *b).tell(to),
-            Self::Arc(arc) => (1u8, arc).tell(to),
-            Self::Nurbs(nurbs) => (2u8, nurbs).tell(to),
-            Self::Helix(helix) => (3u8, helix).tell(to),
-            Self::Offset(offset) => (4u8, offset).tell(to),
-            Self::Composite(composite) => (5u8, composite).tell(to),
+            Self::Line(a, b) => (0u8, *a, *b).hash_into(to),
+            Self::Arc(arc) => (1u8, arc).hash_into(to),
+            Self::Nurbs(nurbs) => (2u8, nurbs).hash_into(to),
+            Self::Helix(helix) => (3u8, helix).hash_into(to),
+            Self::Offset(offset) => (4u8, offset).hash_into(to),
+            Self::Composite(composite) => (5u8, composite).hash_into(to),
         }
     }
 }
 
 impl StableHash for Curve {
-    fn tell(&self, to: &mut StableHasher) {
-        self.0.tell(to);
+    fn hash_into(&self, to: &mut StableHasher) {
+        self.0.hash_into(to);
     }
 }
 

@@ -153,7 +153,7 @@ pub fn closest_pair(a: &Curve, b: &Curve) -> (f64, f64, f64) {
         }
     }
     for _ in 0..MOST_PAIRS {
-        job::look();
+        job::poll();
         let Some(pair) = heap.pop() else { break };
         if pair.bound >= best.2 * (1.0 - NEAREST_PAIR) - rounding {
             break;

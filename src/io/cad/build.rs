@@ -33,7 +33,7 @@ impl Part {
         self.built = Vec::with_capacity(self.surfaces.len());
         let mut said = Vec::new();
         for (k, item) in self.surfaces.iter().enumerate() {
-            job::look();
+            job::poll();
             self.built.push(match item.value.surfaces(origin, tolerance) {
                 Ok(Made { surfaces, doubts, by_accuracy }) => {
                     if by_accuracy {
@@ -41,7 +41,7 @@ impl Part {
                         let (distance, place) = (item.value.slack, item.value.off.place);
                         self.repairs.push(Repair { rule: Rule::Accuracy, face: k, entity, line: item.line, distance, place });
                     }
-                    let words = |doubt: &Doubt| format!("{} at {}{}: {}", item.name, self.mark, item.id, told(doubt, self.model_unit));
+                    let words = |doubt: &Doubt| format!("{} at {}{}: {}", item.name, self.mark, item.id, in_words(doubt, self.model_unit));
                     said.extend(doubts.iter().map(|doubt| Malformed::line(item.line, words(doubt))));
                     surfaces
                 }
@@ -154,7 +154,7 @@ impl Face {
 }
 
 /// "its loops disagree on which side the face is, …".
-fn told(doubt: &Doubt, unit: &str) -> String {
+fn in_words(doubt: &Doubt, unit: &str) -> String {
     let percent = decimals(doubt.share * 100.0, 1);
     let why = match doubt.by {
         Ground::Border => format!("it has {percent} % of the surface border without curves"),

@@ -48,7 +48,7 @@ pub struct Repair {
 
 impl Repair {
     /// Rule and distance in words.
-    pub fn told(&self, unit: &str) -> String {
+    pub fn in_words(&self, unit: &str) -> String {
         let at = [self.place.x, self.place.y, self.place.z].map(|x| text::real((x * 1e3).round() / 1e3)).join(", ");
         format!("{}: {}, by {:.1e} {unit} at ({at})", self.entity, self.rule.words(), self.distance)
     }

@@ -15,7 +15,7 @@ impl Part {
     }
 
     fn difference(&self, stated: &Stated) -> Option<Malformed> {
-        job::look();
+        job::poll();
         let surfaces: Vec<Surface> = stated.surfaces.iter().filter_map(|k| self.built.get(*k)).flatten().cloned().collect();
         let faces = || surfaces.iter().map(|s| (s.clone(), false)).collect::<Vec<(Surface, bool)>>();
         let compared = |word: &str, found: f64, given: f64, unit: &str| {

@@ -297,7 +297,7 @@ impl Sheet {
         lines.section('D');
         let mut first = 1;
         for (entity, parameters) in self.entities.iter().zip(&parameters) {
-            job::look();
+            job::poll();
             let Entity { kind, form, transform, color, level, role, .. } = entity;
             let (n, status) = (parameters.len(), role.status());
             lines.put(&format!("{kind:>8}{first:>8}{0:>8}{0:>8}{level:>8}{0:>8}{transform:>8}{0:>8}{status}", 0))?;

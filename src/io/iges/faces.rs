@@ -71,7 +71,7 @@ impl Book {
         let base = self.base(surface, 0).map_err(|Damage(why)| damage(format!("its surface at D{surface}: {why}")))?;
         let (mut loops, mut outlines) = (Vec::with_capacity(borders.len()), Vec::with_capacity(borders.len()));
         for border in borders {
-            job::look();
+            job::poll();
             let made = self.loop_of(d, *border, &base);
             let made = made.map_err(|Damage(why)| damage(format!("its border at D{border}: {why}")))?;
             loops.push(made.borders);

@@ -36,7 +36,7 @@ impl Opened {
     pub fn counts(&self) -> BTreeMap<u32, usize> {
         let mut counts = BTreeMap::new();
         for entry in &self.book.entries {
-            job::look();
+            job::poll();
             *counts.entry(entry.kind).or_insert(0) += 1;
         }
         counts
@@ -48,7 +48,7 @@ impl Opened {
         // Axes, the places of endless surfaces and the ground of faces reach beyond what is offered.
         let mut hidden = BTreeSet::new();
         for decoded in &self.book.decoded {
-            job::look();
+            job::poll();
             match &decoded.data {
                 Data::Revolution { axis, .. } => hidden.extend([*axis]),
                 Data::PlaneSurface { at, .. } | Data::Round { kind: 192 | 194, at, .. } => hidden.extend([*at]),
@@ -73,7 +73,7 @@ impl Opened {
         let shown = self.with_parts(spaces);
         let hidden: BTreeSet<Pointer> = self.with_parts(hidden).difference(&shown).copied().collect();
         for (entry, decoded) in self.book.entries.iter().zip(&self.book.decoded) {
-            job::look();
+            job::poll();
             if entry.status.purpose == 5 || hidden.contains(&entry.d) {
                 continue;
             }
@@ -104,7 +104,7 @@ impl Opened {
     fn with_parts(&self, mut all: BTreeSet<Pointer>) -> BTreeSet<Pointer> {
         let mut open: Vec<Pointer> = all.iter().copied().collect();
         while let Some(d) = open.pop() {
-            job::look();
+            job::poll();
             let parts = match self.book.data(d) {
                 Ok(Data::Composite(pieces)) => pieces.clone(),
                 Ok(Data::Revolution { axis, profile, .. }) => vec![*axis, *profile],

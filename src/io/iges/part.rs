@@ -72,7 +72,7 @@ impl Maker {
         let (parts, members) = self.relations();
         let mut groups = Vec::new();
         for k in 0..self.book.entries.len() {
-            job::look();
+            job::poll();
             let entry = &self.book.entries[k];
             let (d, kind, status) = (entry.d, entry.kind, entry.status);
             // Faces and shells may be marked as parts although nothing has them.

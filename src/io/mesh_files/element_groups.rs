@@ -47,7 +47,7 @@ pub fn parts(mesh: &Mesh, kind: Kind) -> Vec<Part> {
     for (s, group) in mesh.groups.iter().enumerate() {
         let mut moved: BTreeMap<u32, u32> = BTreeMap::new();
         for element in kind.of_group(group) {
-            job::look();
+            job::poll();
             let Some(class) = class_of.get_mut(*element as usize) else { continue };
             *class = *moved.entry(*class).or_insert_with(|| {
                 let (face, mut sets) = classes[*class as usize].clone();
@@ -64,7 +64,7 @@ pub fn parts(mesh: &Mesh, kind: Kind) -> Vec<Part> {
     }
     let mut members: Vec<Vec<u32>> = vec![Vec::new(); classes.len()];
     for (element, class) in class_of.iter().enumerate() {
-        job::look();
+        job::poll();
         members[*class as usize].push(element as u32);
     }
     let mut parts: Vec<Part> = classes

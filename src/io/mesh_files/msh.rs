@@ -91,7 +91,7 @@ fn points(mesh: &Mesh) -> Vec<Entity> {
     for (s, group) in mesh.groups.iter().enumerate() {
         for kind in KINDS {
             for element in kind.of_group(group) {
-                job::look();
+                job::poll();
                 kind.nodes(mesh, *element as usize, |node| held[node as usize] = s as u32);
             }
         }
@@ -121,7 +121,7 @@ fn own_nodes(mesh: &Mesh, entities: &mut Vec<Entity>) {
             *owner = (*owner).min(e as u32);
         };
         for (kind, elements) in &entity.parts {
-            job::look();
+            job::poll();
             match kind {
                 None => elements.iter().for_each(|node| take(*node)),
                 Some(kind) => elements.iter().for_each(|element| kind.nodes(mesh, *element as usize, &mut take)),

@@ -52,7 +52,7 @@ pub fn read(bytes: &[u8]) -> Result<Obj, Malformed> {
     let mut joined = String::new();
     let mut start = 0;
     for (k, line) in text.lines().enumerate() {
-        job::look();
+        job::poll();
         if joined.is_empty() {
             start = k as u64 + 1;
         }
@@ -197,7 +197,7 @@ impl Scan {
         let mut all: Vec<&Element> = self.polygons.iter().chain(&self.polylines).chain(&self.points).collect();
         all.sort_by_key(|element| element.line);
         for element in all {
-            job::look();
+            job::poll();
             if let Some((k, index)) = element.indices.iter().enumerate().find(|(_, index)| **index as usize >= n) {
                 let what = format!("there is no vertex {}, the file has {n}", u64::from(*index) + 1);
                 return Err(Malformed::at(element.line, k as u64 + 2, what));
@@ -246,7 +246,7 @@ impl Scan {
         let mut corners: Vec<DVec3> = Vec::new();
         let mut polygons = Vec::with_capacity(self.polygons.len());
         for mesh in models.iter().map(|model| &model.mesh) {
-            job::look();
+            job::poll();
             let first = corners.len() as u32;
             corners.extend(mesh.positions.as_chunks::<3>().0.iter().map(|p| DVec3::from_array(*p)));
             // All triangles are said by no arities at all.
@@ -279,7 +279,7 @@ impl Obj {
         for group in self.groups.iter().filter(|group| !group.polygons.is_empty()) {
             let starts = (mesh.triangles.len() as u32, mesh.quads.len() as u32);
             for k in &group.polygons {
-                job::look();
+                job::poll();
                 if let Err(fault) = add(&mut mesh, &self.polygons[*k]) {
                     let what = match fault {
                         PolygonFault::NoArea => "the face has no area and is skipped",

@@ -48,7 +48,7 @@ fn of_ranges<'a>(mesh: &Mesh, name: &str, faces: impl IntoIterator<Item = &'a Fa
     }
     for kind in KINDS {
         for element in kind.of_group(&group) {
-            job::look();
+            job::poll();
             kind.nodes(mesh, *element as usize, |node| {
                 nodes.insert(node);
             });

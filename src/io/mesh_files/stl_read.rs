@@ -48,7 +48,7 @@ type Corners = Vec<DVec3>;
 fn binary(records: &[u8]) -> Result<Corners, Malformed> {
     let mut corners = Vec::with_capacity(records.len() / RECORD * 3);
     for (k, record) in records.as_chunks::<RECORD>().0.iter().enumerate() {
-        job::look();
+        job::poll();
         for corner in record[12..48].as_chunks::<12>().0 {
             let mut p = [0.0; 3];
             for (x, bytes) in p.iter_mut().zip(corner.as_chunks::<4>().0) {
@@ -68,7 +68,7 @@ fn text(bytes: &[u8], name: &str) -> Result<Vec<(String, Corners)>, Malformed> {
     let mut solids: Vec<(String, Corners)> = Vec::new();
     let mut in_loop = None;
     for (k, line) in decode(bytes)?.lines().enumerate() {
-        job::look();
+        job::poll();
         let number = k as u64 + 1;
         let mut words = line.split_whitespace();
         let Some(keyword) = words.next() else { continue };
@@ -110,7 +110,7 @@ fn assemble(solids: Vec<(String, Corners)>, name: &str) -> (Mesh, Vec<Malformed>
     for (name, corners) in solids {
         let start = mesh.triangles.len() as u32;
         for [a, b, c] in places[at..at + corners.len()].as_chunks::<3>().0 {
-            job::look();
+            job::poll();
             if a == b || b == c || c == a {
                 skipped += 1;
             } else {

@@ -13,7 +13,7 @@ pub fn weld(points: &[DVec3]) -> (Vec<DVec3>, Vec<u32>) {
     order.sort_unstable_by_key(|i| (bits(*i), *i));
     let mut first = vec![0_u32; points.len()];
     for run in order.chunk_by(|a, b| bits(*a) == bits(*b)) {
-        job::look();
+        job::poll();
         for i in run {
             first[*i as usize] = run[0];
         }

@@ -163,7 +163,7 @@ impl Walk<'_, '_> {
         if self.full {
             return;
         }
-        job::look();
+        job::poll();
         if depth > DEEP {
             return self.step.warn(entity, "skipped: products are nested too deep, or are parts of themselves");
         }

@@ -17,7 +17,7 @@ impl Step<'_> {
             if std::mem::replace(&mut seen[k as usize], round) == round {
                 continue;
             }
-            job::look();
+            job::poll();
             let row = file.parameters(k);
             let name = file.name(k);
             let see = |reach: Box3, point: u32| self.point(point).map_or(reach, |p| reach.with(p));

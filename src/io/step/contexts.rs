@@ -27,7 +27,7 @@ impl Contexts {
         let mut contexts = Self::default();
         for k in 0..file.records.len() as u32 {
             if k % 1024 == 0 {
-                job::look();
+                job::poll();
             }
             let row = file.parameters(k);
             match file.name(k) {
@@ -55,7 +55,7 @@ impl Contexts {
             if !passed.insert(k) {
                 continue;
             }
-            job::look();
+            job::poll();
             let row = file.parameters(k);
             match file.name(k) {
                 b"NEXT_ASSEMBLY_USAGE_OCCURRENCE" | b"MAPPED_ITEM" => meant.push(k),

@@ -50,7 +50,7 @@ impl Step<'_> {
         let mut vertices = Vec::new();
         let mut outer = 0;
         for bound in bounds {
-            job::look();
+            job::poll();
             let row = self.file.parameters(*bound);
             let name = self.file.name(*bound);
             if !matches!(name, b"FACE_BOUND" | b"FACE_OUTER_BOUND") {

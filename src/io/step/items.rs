@@ -227,7 +227,7 @@ impl<'f> Step<'f> {
         match self.faces_of(k) {
             Ok((shell, faces, turned)) => {
                 for face in self.members(shell, faces) {
-                    job::look();
+                    job::poll();
                     match self.face(face, turned) {
                         Ok(made) => item.faces.push((face, made, Some(shell))),
                         Err(Damage(why)) => self.unusable(face, why),

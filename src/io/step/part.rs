@@ -76,7 +76,7 @@ impl Maker<'_> {
         }
         let all_uses = uses.clone();
         for placed in &assembly.placed {
-            job::look();
+            job::poll();
             let left = uses.entry(placed.item).or_insert(1);
             *left = left.saturating_sub(1);
             let last = *left == 0;

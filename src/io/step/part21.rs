@@ -94,7 +94,7 @@ impl<'b> Reader<'b> {
     /// Goes behind the head of the next DATA section.
     fn enter_data(&mut self) -> bool {
         while self.at < self.bytes.len() {
-            job::look();
+            job::poll();
             self.skip();
             let (a, b) = self.word();
             if &self.bytes[a as usize..b as usize] == b"DATA" {
@@ -125,7 +125,7 @@ impl<'b> Reader<'b> {
     fn section(&mut self, records: &mut Vec<Record>, wrong: &mut Vec<Wrong>, again: &mut usize) -> bool {
         loop {
             if records.len().is_multiple_of(1024) {
-                job::look();
+                job::poll();
             }
             self.skip();
             match self.peek() {

@@ -45,7 +45,7 @@ impl Tables {
         let (mut shown, mut links, mut used) = (Vec::new(), Vec::new(), Vec::new());
         for k in 0..file.records.len() as u32 {
             if k % 1024 == 0 {
-                job::look();
+                job::poll();
             }
             let row = file.parameters(k);
             match file.name(k) {

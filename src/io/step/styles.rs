@@ -55,7 +55,7 @@ impl Looks {
         let contexts = Contexts::of(file);
         for k in 0..file.records.len() as u32 {
             if k % 1024 == 0 {
-                job::look();
+                job::poll();
             }
             match file.name(k) {
                 b"STYLED_ITEM" | b"OVER_RIDING_STYLED_ITEM" | b"CONTEXT_DEPENDENT_OVER_RIDING_STYLED_ITEM" => {

@@ -52,7 +52,7 @@ pub(crate) fn read_separated(text: &str, reading: &Reading) -> Result<Table, Mal
     let mut first = true;
     let mut lines = Lines { bytes: text.as_bytes(), at: 0, line: 1 };
     loop {
-        job::look();
+        job::poll();
         let more = reader.read_record(&mut record).map_err(|e| {
             let line = e.position().map_or(0, csv::Position::line);
             Malformed::line(line, "the line cannot be read as a row of cells")

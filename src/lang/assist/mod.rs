@@ -6,18 +6,18 @@
 pub mod around;
 pub mod frames;
 pub mod function;
+pub mod hover;
 pub mod infer;
 pub mod offer;
 pub mod place;
 pub mod scripts;
 pub mod shape;
-pub mod tell;
 
 pub use crate::lang::assist::function::{Function, Parameter};
+pub use crate::lang::assist::hover::{About, hover_text};
 pub use crate::lang::assist::offer::{Candidate, Offer, Sort};
 pub use crate::lang::assist::scripts::{Known, Open};
 pub use crate::lang::assist::shape::Shape;
-pub use crate::lang::assist::tell::{About, told};
 
 use crate::lang::assist::scripts::Scripts;
 
@@ -61,7 +61,7 @@ impl Script<'_> {
 
     /// What the word at a byte means.
     pub fn hover(&self, at: usize) -> Option<About> {
-        if self.is_served(at) { tell::about(&self.read(), at) } else { None }
+        if self.is_served(at) { hover::about(&self.read(), at) } else { None }
     }
 
     /// The call whose brackets a byte is in, and the parameter that is at hand.

@@ -378,7 +378,7 @@ impl Cx<'_> {
             return Err(self.out_of_page(code, key, &value, id));
         }
         let Some((_, range)) = setting.range.iter().find(|(holds, _)| !holds(x)) else { return Ok(value) };
-        let found = if let Value::Number(q) = &value { units::told(*q, self.program.unit) } else { self.show(&value) };
+        let found = if let Value::Number(q) = &value { units::in_words(*q, self.program.unit) } else { self.show(&value) };
         Err(self.error(code, "E306", format!("`{key}` must be {range}, got {found}"), code.span(id), found).came_from(code).stop())
     }
 

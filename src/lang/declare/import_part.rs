@@ -57,7 +57,7 @@ impl Cx<'_> {
         let mut warnings = std::mem::take(&mut part.warnings);
         warnings.append(&mut part.build(file.origin, &tolerance));
         if self.sink.whole {
-            let told = |repair: &Repair| Malformed::line(repair.line, repair.told(part.model_unit));
+            let told = |repair: &Repair| Malformed::line(repair.line, repair.in_words(part.model_unit));
             // What is as exact as the file says is nothing to warn of.
             warnings.extend(part.repairs.iter().filter(|repair| repair.rule != Rule::Accuracy).map(told));
         }

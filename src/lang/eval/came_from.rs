@@ -32,7 +32,7 @@ impl Cx<'_> {
             let text = self.program.names.text(name);
             let local = self.machine.locals[self.machine.base..].iter().rev().find(|l| l.0 == name).filter(|_| locals);
             if let Some((_, Value::Number(q))) = local {
-                told.push((None, format!("`{text} = {}`", crate::lang::values::units::told(*q, self.program.unit))));
+                told.push((None, format!("`{text} = {}`", crate::lang::values::units::in_words(*q, self.program.unit))));
             }
             let m = self.machine.at(module);
             let Some(index) = m.find(name).filter(|i| local.is_none() && !told.iter().any(|t| t.0 == Some(*i))) else { continue };
@@ -40,7 +40,8 @@ impl Cx<'_> {
             let declaration = &m.script.declarations[index as usize];
             let Some((at, name_span)) = value_of(declaration) else { continue };
             let node = &declaration.nodes[at.index()];
-            let (source, value) = (self.program.sources.text(m.file, node.span), crate::lang::values::units::told(*q, self.program.unit));
+            let (source, value) =
+                (self.program.sources.text(m.file, node.span), crate::lang::values::units::in_words(*q, self.program.unit));
             let line = self.program.sources.place(m.file, name_span.start).map_or(1, |p| p.line);
             let short = source.chars().count() <= SOURCE && !source.contains(['\n', '`']);
             let words = if is_literal(declaration, at) || !short {

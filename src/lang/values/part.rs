@@ -152,7 +152,7 @@ impl PartValue {
                 let all: Vec<&Repair> = file.repairs.iter().filter(|repair| repair.rule == rule).collect();
                 if !all.is_empty() {
                     lines.push(format!("  {}: {}", rule.words(), counted(all.len(), "time", "times")));
-                    lines.extend(all.iter().map(|repair| format!("    line {}: {}", repair.line, repair.told(unit))));
+                    lines.extend(all.iter().map(|repair| format!("    line {}: {}", repair.line, repair.in_words(unit))));
                 }
             }
             if !file.notes.is_empty() {

@@ -217,7 +217,7 @@ fn three_digits(x: f64) -> String {
 }
 
 /// A quantity as messages tell it: a length with three digits, anything else as it is.
-pub fn told(q: Quantity, model: LengthUnit) -> String {
+pub fn in_words(q: Quantity, model: LengthUnit) -> String {
     if q.dim != Dim::LENGTH {
         return quantity_text(q, model);
     }
@@ -253,7 +253,7 @@ fn is_share_of_pi(value: f64) -> bool {
 mod tests {
     #[test]
     fn lengths_are_told_in_three_digits() {
-        let told = |x: f64, unit: &str| super::told(super::Quantity::new(x, super::Dim::LENGTH), super::length_unit(unit).unwrap());
+        let told = |x: f64, unit: &str| super::in_words(super::Quantity::new(x, super::Dim::LENGTH), super::length_unit(unit).unwrap());
         assert_eq!(told(0.0003, "m"), "0.3mm");
         assert_eq!(told(0.3, "mm"), "0.3mm");
         assert_eq!([told(5000.0, "mm"), told(1234.567, "mm"), told(25_000.0, "mm")], ["5000mm", "1235mm", "25m"]);

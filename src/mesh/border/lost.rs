@@ -110,8 +110,8 @@ impl What {
 }
 
 impl StableHash for Lost {
-    fn tell(&self, to: &mut StableHasher) {
-        (self.what.numbers(), (self.length, self.at, self.more)).tell(to);
+    fn hash_into(&self, to: &mut StableHasher) {
+        (self.what.numbers(), (self.length, self.at, self.more)).hash_into(to);
     }
 }
 

@@ -31,11 +31,11 @@ crate::plain!(Tally { whole, crossed, corners, agree });
 crate::content!(Source { body, radius, size, steep, tag });
 
 impl StableHash for Body {
-    fn tell(&self, to: &mut StableHasher) {
+    fn hash_into(&self, to: &mut StableHasher) {
         match self {
-            Self::Point(p) => (0u8, p).tell(to),
-            Self::Segment(a, b) => (1u8, a, b).tell(to),
-            Self::Box(Box3 { min, max }) => (2u8, min, max).tell(to),
+            Self::Point(p) => (0u8, p).hash_into(to),
+            Self::Segment(a, b) => (1u8, a, b).hash_into(to),
+            Self::Box(Box3 { min, max }) => (2u8, min, max).hash_into(to),
         }
     }
 }
@@ -79,19 +79,19 @@ pub(crate) fn key(
 ) -> Digest {
     let plan = made.input.plan;
     let mut to = known.on("free face", face.surface).text(env!("CARGO_PKG_VERSION")).number(u64::from(crate::mesh::request::VERSION));
-    made.input.tolerance.tell(&mut to);
-    (face.elements, face.method, face.size.0).tell(&mut to);
-    (Limits::of(made.input), plan.settings.smooth.map(|n| n.0), (plan.slope(), plan.most_elements)).tell(&mut to);
-    (made.wanted.floor, made.wanted.written).tell(&mut to);
-    (rules.items(), rules.slope()).tell(&mut to);
+    made.input.tolerance.hash_into(&mut to);
+    (face.elements, face.method, face.size.0).hash_into(&mut to);
+    (Limits::of(made.input), plan.settings.smooth.map(|n| n.0), (plan.slope(), plan.most_elements)).hash_into(&mut to);
+    (made.wanted.floor, made.wanted.written).hash_into(&mut to);
+    (rules.items(), rules.slope()).hash_into(&mut to);
     // Numbers of nodes depend on the whole mesh: here by first appearance.
     let mut order: Vec<(u32, usize)> = border.ids.iter().copied().zip(0..).collect();
     order.sort_unstable();
     order.dedup_by_key(|n| n.0);
     let first = |id: &u32| order.get(order.partition_point(|n| n.0 < *id)).map(|n| n.1);
-    border.ids.iter().map(first).collect::<Vec<_>>().tell(&mut to);
-    border.ids.iter().map(|id| odd.binary_search(id).is_ok()).collect::<Vec<_>>().tell(&mut to);
-    (&border.uv, &outline.p, (&border.edges, &border.lines)).tell(&mut to);
+    border.ids.iter().map(first).collect::<Vec<_>>().hash_into(&mut to);
+    border.ids.iter().map(|id| odd.binary_search(id).is_ok()).collect::<Vec<_>>().hash_into(&mut to);
+    (&border.uv, &outline.p, (&border.edges, &border.lines)).hash_into(&mut to);
     to.finish()
 }
 

@@ -18,14 +18,14 @@ use crate::network::Chain;
 /// `surfaces` the digests of the plan's surfaces.
 pub fn of(input: &Input, layouts: &[Layout], size: f64, surfaces: &BTreeMap<SurfaceId, Digest>) -> Digest {
     let mut to = StableHasher::new("mesh").text(env!("CARGO_PKG_VERSION")).number(u64::from(crate::mesh::request::VERSION));
-    input.tolerance.tell(&mut to);
+    input.tolerance.hash_into(&mut to);
     let mut places = BTreeMap::new();
     input.plan.surfaces.iter().enumerate().for_each(|(place, (surface, _))| {
         places.entry(*surface).or_insert(place);
     });
-    let teller = Teller { input, layouts, surfaces, places };
+    let teller = PlanHasher { input, layouts, surfaces, places };
     teller.plan(size, &mut to);
-    layouts.len().tell(&mut to);
+    layouts.len().hash_into(&mut to);
     layouts.iter().for_each(|layout| teller.layout(layout, &mut to));
     to.finish()
 }
@@ -33,7 +33,7 @@ pub fn of(input: &Input, layouts: &[Layout], size: f64, surfaces: &BTreeMap<Surf
 crate::content_of_word!(Elements, Method);
 crate::content!(FaceSide { uses, pole, length });
 
-struct Teller<'a> {
+struct PlanHasher<'a> {
     input: &'a Input<'a>,
     layouts: &'a [Layout],
     surfaces: &'a BTreeMap<SurfaceId, Digest>,
@@ -41,7 +41,7 @@ struct Teller<'a> {
     places: BTreeMap<SurfaceId, usize>,
 }
 
-impl Teller<'_> {
+impl PlanHasher<'_> {
     fn plan(&self, size: f64, to: &mut StableHasher) {
         let Plan {
             name,
@@ -59,27 +59,27 @@ impl Teller<'_> {
             groups,
             most_elements,
         } = self.input.plan;
-        (name, size, (settings, *most_elements)).tell(to);
-        surfaces.len().tell(to);
+        (name, size, (settings, *most_elements)).hash_into(to);
+        surfaces.len().hash_into(to);
         for (id, flipped) in surfaces {
             let named = &self.input.model.surfaces[id.index()];
-            (self.places.get(id), *flipped, (&named.name, self.surfaces.get(id))).tell(to);
+            (self.places.get(id), *flipped, (&named.name, self.surfaces.get(id))).hash_into(to);
         }
-        (curves, points, imprint.as_ref().map(|i| &i.0)).tell(to);
-        rules.len().tell(to);
+        (curves, points, imprint.as_ref().map(|i| &i.0)).hash_into(to);
+        rules.len().hash_into(to);
         rules.iter().for_each(|rule| self.rule(rule, to));
-        refines.len().tell(to);
+        refines.len().hash_into(to);
         for Refine { at, size, radius, origin: _ } in refines {
-            (at.len(), size.0, *radius).tell(to);
+            (at.len(), size.0, *radius).hash_into(to);
             at.iter().for_each(|place| match place {
-                Place::Point(p) => (0u8, *p).tell(to),
-                Place::Chain(chain) => (1u8, chain).tell(to),
-                Place::Box(b) => (2u8, b.min, b.max).tell(to),
+                Place::Point(p) => (0u8, *p).hash_into(to),
+                Place::Chain(chain) => (1u8, chain).hash_into(to),
+                Place::Box(b) => (2u8, b.min, b.max).hash_into(to),
             });
         }
-        groups.len().tell(to);
+        groups.len().hash_into(to);
         for GroupRequest { name, members, origin: _ } in groups {
-            (name, members.len()).tell(to);
+            (name, members.len()).hash_into(to);
             members.iter().for_each(|member| self.target(member, to));
         }
     }
@@ -87,7 +87,7 @@ impl Teller<'_> {
     fn rule(&self, rule: &Rule, to: &mut StableHasher) {
         let Rule { target, settings, origin: _ } = rule;
         self.target(target, to);
-        settings.tell(to);
+        settings.hash_into(to);
     }
 
     /// What a rule or group speaks of, and what of the mesh that is.
@@ -95,37 +95,37 @@ impl Teller<'_> {
         match target {
             Target::Chain(chain) => self.chain(chain, to),
             Target::Edge(courses) => {
-                (4u8, courses.len()).tell(to);
+                (4u8, courses.len()).hash_into(to);
                 for course in courses {
-                    self.layouts.iter().for_each(|layout| layout.along_course(course).tell(to));
+                    self.layouts.iter().for_each(|layout| layout.along_course(course).hash_into(to));
                 }
             }
             Target::Surface(_) | Target::Patches(_) => {
-                matches!(target, Target::Surface(_)).tell(to);
+                matches!(target, Target::Surface(_)).hash_into(to);
                 for face in self.layouts.iter().flat_map(|l| &l.faces) {
-                    target.faces(face.patch, face.surface).tell(to);
+                    target.faces(face.patch, face.surface).hash_into(to);
                 }
             }
-            Target::Point(point) => (2u8, *point).tell(to),
+            Target::Point(point) => (2u8, *point).hash_into(to),
         }
     }
 
     fn chain(&self, chain: &Chain, to: &mut StableHasher) {
-        (3u8, chain, links_of(self.input, chain)).tell(to);
-        self.layouts.iter().for_each(|layout| layout.along(self.input, chain).tell(to));
+        (3u8, chain, links_of(self.input, chain)).hash_into(to);
+        self.layouts.iter().for_each(|layout| layout.along(self.input, chain).hash_into(to));
     }
 
     fn layout(&self, layout: &Layout, to: &mut StableHasher) {
         // Which edges its tracks are is told by the faces.
         let Layout { faces, parts, pieces, edges: _, of_link, curves, points, creases, meets, lost } = layout;
-        faces.len().tell(to);
+        faces.len().hash_into(to);
         faces.iter().for_each(|face| self.face(face, to));
-        (parts, pieces, (curves, points, (creases, meets, lost))).tell(to);
-        of_link.len().tell(to);
+        (parts, pieces, (curves, points, (creases, meets, lost))).hash_into(to);
+        of_link.len().hash_into(to);
         for (link, uses) in of_link {
             let network = self.input.network;
             let curve = network.links[link.index()].curve;
-            (&network.curves[curve.index()].name, uses).tell(to);
+            (&network.curves[curve.index()].name, uses).hash_into(to);
         }
     }
 
@@ -151,9 +151,9 @@ impl Teller<'_> {
             points: _,
         } = face;
         let record = &self.input.model.patches[patch.index()];
-        (self.places.get(surface), self.patch(*surface, *patch), (record.u, record.v)).tell(to);
-        (*flipped, *elements, (*method, size.0, size.1)).tell(to);
-        (sides, *near).tell(to);
+        (self.places.get(surface), self.patch(*surface, *patch), (record.u, record.v)).hash_into(to);
+        (*flipped, *elements, (*method, size.0, size.1)).hash_into(to);
+        (sides, *near).hash_into(to);
     }
 
     /// The number of a patch on its surface.

@@ -31,12 +31,12 @@ impl Mesh {
         let FaceGeometry { surface, nodes, flipped: _ } = geometry;
         let mut to = StableHasher::new("chord").with(surface);
         nodes.hash_places(&mut to);
-        tolerance.tell(&mut to);
+        tolerance.hash_into(&mut to);
         if let FaceNodes::Grid(_, frame) = nodes {
-            frame.poles.tell(&mut to);
+            frame.poles.hash_into(&mut to);
         }
         // Elements follow each other as the shape has them, so their corners tell where its nodes are and which diagonals were taken.
-        let mut corners = |ids: &[u32]| ids.iter().for_each(|n| self.nodes[*n as usize].tell(&mut to));
+        let mut corners = |ids: &[u32]| ids.iter().for_each(|n| self.nodes[*n as usize].hash_into(&mut to));
         self.triangles[face.triangles.start as usize..face.triangles.end as usize].iter().for_each(|t| corners(t));
         self.quads[face.quads.start as usize..face.quads.end as usize].iter().for_each(|q| corners(q));
         to.finish()

@@ -200,8 +200,8 @@ impl CacheView<'_> {
     pub fn face(&self, ready: &FaceMesh, border: &[DVec3], even: f64) -> Digest {
         let mut to = self.on("face", ready.surface);
         ready.geometry.nodes.hash_places(&mut to);
-        (ready.elements, even).tell(&mut to);
-        let mut points = |ids: &[u32]| ids.iter().for_each(|id| border.get(*id as usize).tell(&mut to));
+        (ready.elements, even).hash_into(&mut to);
+        let mut points = |ids: &[u32]| ids.iter().for_each(|id| border.get(*id as usize).hash_into(&mut to));
         match &ready.geometry.nodes {
             FaceNodes::Grid(_, frame) => frame.sides.iter().for_each(|side| points(side)),
             FaceNodes::Lattice(_, frame) => frame.sides.iter().for_each(|side| points(side)),
@@ -209,7 +209,7 @@ impl CacheView<'_> {
             FaceNodes::Free(_, places) => points(places),
         }
         if let FaceNodes::Grid(_, frame) = &ready.geometry.nodes {
-            frame.poles.tell(&mut to);
+            frame.poles.hash_into(&mut to);
         }
         to.finish()
     }
@@ -226,10 +226,10 @@ impl FaceNodes {
     /// Hashes where the nodes lie, whatever their ids.
     pub fn hash_places(&self, to: &mut StableHasher) {
         match self {
-            Self::Grid(grid, _) => (0u8, grid).tell(to),
-            Self::Lattice(lattice, _) => (1u8, lattice).tell(to),
-            Self::Blocks(blocks, _) => (2u8, blocks).tell(to),
-            Self::Free(free, _) => (3u8, free).tell(to),
+            Self::Grid(grid, _) => (0u8, grid).hash_into(to),
+            Self::Lattice(lattice, _) => (1u8, lattice).hash_into(to),
+            Self::Blocks(blocks, _) => (2u8, blocks).hash_into(to),
+            Self::Free(free, _) => (3u8, free).hash_into(to),
         }
     }
 }

@@ -81,14 +81,14 @@ pub(crate) fn halved(edges: &[[u32; 2]], place: &[u32]) -> Option<Halved> {
     // Edges into and out of each middle node; one that is run twice has two of each.
     let mut at: Vec<(Vec<usize>, Vec<usize>)> = vec![Default::default(); place.len()];
     for (k, [a, b]) in edges.iter().enumerate() {
-        job::look();
+        job::poll();
         at[*b as usize].0.push(k);
         at[*a as usize].1.push(k);
     }
     let mut done = vec![false; edges.len()];
     let (mut found, mut mids) = (Vec::new(), Vec::new());
     for (k, [a, b]) in edges.iter().enumerate() {
-        job::look();
+        job::poll();
         if done[k] {
             continue;
         }

@@ -94,7 +94,7 @@ pub(crate) fn inside(all: &Triangles, outline: &Outline) -> Vec<bool> {
         }
     }
     while let Some(t) = open.pop() {
-        job::look();
+        job::poll();
         for k in 0..3 {
             let next = all.across[t][k];
             if next != NO_TRIANGLE && state[next as usize] == 2 {

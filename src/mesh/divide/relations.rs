@@ -7,7 +7,7 @@ use crate::base::origin::Origin;
 use crate::base::tolerance::WHOLE_NUMBER;
 use crate::mesh::border::layout::{Face, Layout};
 use crate::mesh::divide::row_demand::RowDemand;
-use crate::mesh::divide::strips::{Conflict, Relation, Stretch};
+use crate::mesh::divide::strips::{Conflict, Relation, Unknown};
 use crate::mesh::divide::verdict::Verdict;
 use crate::mesh::request::fault::{MeshFault, MeshLimit};
 use crate::mesh::request::input::Input;
@@ -19,7 +19,7 @@ use crate::mesh::size::sizing::{Decision, MOST, Sizing};
 #[derive(Clone, Debug)]
 struct Row {
     face: usize,
-    segment: Stretch,
+    segment: Unknown,
     /// The limit behind `least`, once the finished face has asked for more.
     limit: MeshLimit,
 }
@@ -42,13 +42,13 @@ fn whole(x: f64) -> u32 {
 
 impl Sizing {
     /// The segments as unknowns of the solver.
-    pub fn segments(&self, layout: &Layout) -> Vec<Stretch> {
+    pub fn segments(&self, layout: &Layout) -> Vec<Unknown> {
         let mut even = vec![false; self.decisions.len()];
         layout.faces.iter().filter(|f| f.takes_quads()).flat_map(|f| f.segments()).for_each(|s| even[s] = true);
         // A written count may be odd where another one of the face is.
         let sides = layout.faces.iter().flat_map(|f| &f.sides).flat_map(|s| &s.uses);
         sides.filter(|u| self.decisions[u.segment].count.is_some()).for_each(|u| even[u.segment] = false);
-        let one = |(k, d): (usize, &Decision)| Stretch {
+        let one = |(k, d): (usize, &Decision)| Unknown {
             least: d.least,
             demand: d.demand,
             written: d.count.map(|c| c.0),
@@ -100,7 +100,7 @@ impl Relations {
 
     fn row(&mut self, face: usize, demand: &RowDemand, least: u32) -> usize {
         let least = whole(demand.least).max(least);
-        let segment = Stretch { least, demand: whole(demand.size).max(least), written: None, length: demand.length, even: false };
+        let segment = Unknown { least, demand: whole(demand.size).max(least), written: None, length: demand.length, even: false };
         self.rows.push(Row { face, segment, limit: MeshLimit::Size });
         let row = self.first_row + self.rows.len() - 1;
         self.of_face[face].push(row);
@@ -119,7 +119,7 @@ impl Relations {
     }
 
     /// The rows as unknowns.
-    pub fn rows(&self) -> impl Iterator<Item = Stretch> + '_ {
+    pub fn rows(&self) -> impl Iterator<Item = Unknown> + '_ {
         self.rows.iter().map(|r| r.segment.clone())
     }
 

@@ -12,7 +12,7 @@ use crate::model::glue::root;
 
 /// One segment (or one inner direction of a face without a side that could tell).
 #[derive(Clone, Debug)]
-pub struct Stretch {
+pub struct Unknown {
     /// Least count that limits (chord, angle, shape) allow, with at least 1.
     pub least: u32,
     /// Wanted count: the largest of size and limits.
@@ -117,7 +117,7 @@ struct Solver<'a> {
 
 /// Least counts that satisfy all relations, and the strip of each segment. Sums stay below `limit`; of steps whose lengths differ
 /// by no more than `near` the first is raised.
-pub fn solve(segments: &[Stretch], relations: &[Relation], (limit, near): (u32, f64)) -> Result<(Vec<u32>, Vec<usize>), Conflict> {
+pub fn solve(segments: &[Unknown], relations: &[Relation], (limit, near): (u32, f64)) -> Result<(Vec<u32>, Vec<usize>), Conflict> {
     let mut solver = Solver::new(segments, relations, (limit, near))?;
     solver.parities()?;
     solver.pass_on()?;
@@ -129,7 +129,7 @@ pub fn solve(segments: &[Stretch], relations: &[Relation], (limit, near): (u32, 
 }
 
 impl<'a> Solver<'a> {
-    fn new(segments: &[Stretch], relations: &'a [Relation], (limit, near): (u32, f64)) -> Result<Self, Conflict> {
+    fn new(segments: &[Unknown], relations: &'a [Relation], (limit, near): (u32, f64)) -> Result<Self, Conflict> {
         let mut parent: Vec<usize> = (0..segments.len()).collect();
         for relation in relations {
             if let Relation::Equal(a, b) = relation
@@ -240,7 +240,7 @@ impl<'a> Solver<'a> {
             let mut changed = false;
             work::spend(self.relations.len() as u64);
             for r in 0..self.relations.len() {
-                job::look();
+                job::poll();
                 changed |= match &self.relations[r] {
                     Relation::Equal(a, b) => self.pass_over(r, a, b)?,
                     Relation::EvenSum(_) => false,
@@ -384,7 +384,7 @@ impl<'a> Solver<'a> {
             let mut changed = false;
             work::spend(self.relations.len() as u64);
             for r in 0..self.relations.len() {
-                job::look();
+                job::poll();
                 changed |= match &self.relations[r] {
                     Relation::Equal(a, b) => self.raise_over(r, a, b)?,
                     Relation::EvenSum(_) => false,
@@ -464,15 +464,15 @@ impl<'a> Solver<'a> {
 mod tests {
     use super::*;
 
-    fn soft(demand: u32) -> Stretch {
-        Stretch { least: 1, demand, written: None, length: f64::from(demand), even: false }
+    fn soft(demand: u32) -> Unknown {
+        Unknown { least: 1, demand, written: None, length: f64::from(demand), even: false }
     }
 
-    fn written(count: u32) -> Stretch {
-        Stretch { written: Some(count), ..soft(3) }
+    fn written(count: u32) -> Unknown {
+        Unknown { written: Some(count), ..soft(3) }
     }
 
-    fn check(segments: &[Stretch], relations: &[Relation], expected: Result<&[u32], Conflict>) {
+    fn check(segments: &[Unknown], relations: &[Relation], expected: Result<&[u32], Conflict>) {
         let found = solve(segments, relations, (10_000, 0.0)).map(|r| r.0);
         assert_eq!(found, expected.map(<[u32]>::to_vec));
         if let Ok(n) = found {
@@ -512,7 +512,7 @@ mod tests {
 
     #[test]
     fn a_written_count_below_a_limit_is_refused() {
-        let fine = Stretch { least: 9, ..soft(9) };
+        let fine = Unknown { least: 9, ..soft(9) };
         check(&[written(4), fine], &[equal(&[0], &[1])], Err(Conflict::TooCoarse { written: 0, needs: 1, least: 9 }));
     }
 
@@ -537,8 +537,8 @@ mod tests {
         check(&[soft(3), soft(2)], &[equal(&[0], &[0, 1])], Err(Conflict::Endless { relation: 0 }));
     }
 
-    fn even(demand: u32) -> Stretch {
-        Stretch { even: true, ..soft(demand) }
+    fn even(demand: u32) -> Unknown {
+        Unknown { even: true, ..soft(demand) }
     }
 
     #[test]

@@ -76,7 +76,7 @@ pub fn check(input: &Input, limits: &Limits, mesh: &Mesh, faces: &[Finished], re
         let finished = &faces[k];
         let hash = |to: &mut StableHasher| {
             let of_face = (finished.written, finished.demands, (input.tolerance, finished.ready.geometry.flipped));
-            (limits, finished.face.size.0, of_face).tell(to);
+            (limits, finished.face.size.0, of_face).hash_into(to);
         };
         recall(k, &hash, &|| verdict_on(input, limits, mesh, finished))
     })

@@ -76,7 +76,7 @@ pub fn add(input: &Input, layout: &Layout, nodes: &Nodes, prepared: &[FaceMesh],
             ready,
             &mesh.triangles[triangles],
             |corners, uv, is_quad| {
-                job::look();
+                job::poll();
                 let n = corners.len();
                 let mids: Vec<u32> = (0..n).map(|k| mid(corners[k], corners[(k + 1) % n], uv)).collect();
                 if is_quad {

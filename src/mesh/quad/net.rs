@@ -100,7 +100,7 @@ impl Raw<'_> {
         net.normal = vec![DVec3::ZERO; fixed];
         net.size = vec![0.0; fixed];
         for n in 0..triangulation.fixed as usize {
-            job::look();
+            job::poll();
             let at = halves.of[n] as usize;
             (net.normal[at], net.size[at]) = (self.normal[n], triangulation.size[n]);
         }
@@ -110,7 +110,7 @@ impl Raw<'_> {
         let mut sides: Vec<[(u32, usize); 4]> = Vec::new();
         let mut side_of = vec![[NONE; 3]; triangulation.tri.len()];
         for t in 0..triangulation.tri.len() as u32 {
-            job::look();
+            job::poll();
             let mate = self.mate[t as usize];
             if self.flat[t as usize] || mate != NO_TRIANGLE && mate < t {
                 continue;
@@ -150,7 +150,7 @@ impl Raw<'_> {
         let triangulation = self.triangulation;
         let mut beyond = Beyond { side: None, locked: false, mid: NONE };
         for _ in 0..=triangulation.tri.len() {
-            job::look();
+            job::poll();
             let c = triangulation.tri[t as usize];
             if triangulation.locked[t as usize] >> k & 1 == 1 {
                 beyond.locked = true;

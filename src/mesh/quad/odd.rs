@@ -26,7 +26,7 @@ const ALL_WAYS: usize = 6;
 pub fn whole_sides(net: &Net) -> Option<Vec<u8>> {
     let mut rows = Rows { net, whole: vec![0; net.face.len()] };
     for f in 0..net.face.len() {
-        job::look();
+        job::poll();
         for k in 0..net.corners(f).len() {
             rows.whole[f] |= u8::from(rows.is_border(f, k) && net.mid[f][k] == NONE) << k;
         }
@@ -122,7 +122,7 @@ impl Rows<'_> {
         known[4 * start + first] = (0, usize::MAX);
         let mut last = None;
         while let Some(Step { cost, state }) = open.pop() {
-            job::look();
+            job::poll();
             let (f, from) = (state / 4, state % 4);
             if cost > known[state].0 {
                 continue;

@@ -35,7 +35,7 @@ pub fn open(net: &mut Net, (chart_surface, field): (&dyn ParametricSurface, &dyn
     }
     let (mut busy, mut made) = (vec![false; net.p.len()], Vec::new());
     for Opening { node, towards, hinges, .. } in all {
-        job::look();
+        job::poll();
         let near: Vec<usize> =
             faces_of[node].iter().flat_map(|f| net.face[*f as usize]).filter(|n| *n != NONE).map(|n| n as usize).collect();
         if near.iter().any(|n| busy.get(*n).is_none_or(|busy| *busy)) {

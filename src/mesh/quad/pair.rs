@@ -42,7 +42,7 @@ pub fn pair(triangulation: &Triangulation, normal: &[DVec3], flat: &[bool], alon
     let cost = costs(triangulation, normal, flat, alone);
     let mut order: Vec<(f64, u32, u8)> = Vec::new();
     for (t, sides) in cost.iter().enumerate() {
-        job::look();
+        job::poll();
         for (k, c) in sides.iter().enumerate() {
             if c.is_finite() && triangulation.across[t][k] > t as u32 {
                 order.push((*c, t as u32, k as u8));
@@ -82,7 +82,7 @@ fn costs(triangulation: &Triangulation, normal: &[DVec3], flat: &[bool], alone: 
     };
     let mut all = vec![[f64::INFINITY; 3]; triangulation.tri.len()];
     for t in 0..triangulation.tri.len() {
-        job::look();
+        job::poll();
         for k in 0..3 {
             let other = triangulation.across[t][k];
             all[t][k] = match (other as usize) < t {
@@ -107,7 +107,7 @@ impl Pairing<'_> {
     fn exchange(&mut self, flat: &[bool]) -> bool {
         let mut changed = false;
         for t in 0..self.triangulation.tri.len() as u32 {
-            job::look();
+            job::poll();
             if self.mate[t as usize] != NO_TRIANGLE || flat[t as usize] {
                 continue;
             }

@@ -12,14 +12,14 @@ use crate::mesh::quad::net::Net;
 pub fn split(net: &Net, whole: &[u8], (chart_surface, field): (&dyn ParametricSurface, &dyn SizeField)) -> Net {
     let mut fine = Net { p: net.p.clone(), xy: net.xy.clone(), normal: net.normal.clone(), fixed: net.fixed, ..Net::default() };
     for n in 0..net.fixed as usize {
-        job::look();
+        job::poll();
         if fine.normal[n] == DVec3::ZERO {
             fine.normal[n] = chart_surface.spot(fine.xy[n]).normal();
         }
     }
     let mut mids = vec![[NONE; 4]; net.face.len()];
     for f in 0..net.face.len() {
-        job::look();
+        job::poll();
         let c = net.corners(f);
         for k in 0..c.len() {
             let other = net.across[f][k];
@@ -33,7 +33,7 @@ pub fn split(net: &Net, whole: &[u8], (chart_surface, field): (&dyn ParametricSu
         }
     }
     for (f, mids) in mids.iter().enumerate() {
-        job::look();
+        job::poll();
         let c = net.corners(f);
         let n = c.len();
         // The first of the sides that are not halved, the one before it halved where there are two in a row.

@@ -34,7 +34,7 @@ impl<'a> Swapper<'a> {
     pub fn new(net: &'a mut Net) -> Self {
         let (mut valence, mut angle) = (vec![0; net.p.len()], vec![0.0; net.fixed as usize]);
         for f in 0..net.face.len() {
-            job::look();
+            job::poll();
             let c = net.corners(f);
             for (k, n) in c.iter().enumerate() {
                 valence[*n as usize] += 1;

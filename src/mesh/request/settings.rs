@@ -158,8 +158,8 @@ macro_rules! mesh_settings {
         }
 
         impl StableHash for $name {
-            fn tell(&self, to: &mut StableHasher) {
-                $(self.$word.map(|written| written.0).tell(to);)*
+            fn hash_into(&self, to: &mut StableHasher) {
+                $(self.$word.map(|written| written.0).hash_into(to);)*
             }
         }
     )*};

@@ -411,7 +411,7 @@ impl SpacingSolver<'_> {
         for w in spacing.at.windows(2) {
             let mut open = vec![(place(w[0]), place(w[1]), MAX_DEPTH)];
             while let Some((a, b, left)) = open.pop() {
-                job::look();
+                job::poll();
                 let middle = place(0.5 * (a.0 + b.0));
                 let size = a.2.min(b.2);
                 let straight = [(0.5, middle.1), (0.25, self.layout.point(k, 0.75 * a.0 + 0.25 * b.0))];

@@ -102,7 +102,7 @@ fn bits(made: &FaceInput, face: &Face) -> BTreeMap<(u32, u32), Bit> {
         let at = made.nodes.fractions(segment, false);
         for step in 1..=if face.takes_quads() { 2 } else { 1 } {
             for k in 0..ids.len().saturating_sub(step) {
-                job::look();
+                job::poll();
                 let (a, b) = (ids[k], ids[k + step]);
                 bits.entry((a.min(b), a.max(b))).or_insert(Bit { segment, first: a, f: (at[k], at[k + step]) });
             }
@@ -151,7 +151,7 @@ impl ProximityScan<'_> {
         edges.sort_by(|a, b| left(a).total_cmp(&left(b)).then(a.cmp(b)));
         let mut found = Vec::new();
         for (k, one) in edges.iter().enumerate() {
-            job::look();
+            job::poll();
             let (a, b) = ends(one);
             for other in edges[k + 1..].iter().take_while(|o| left(o) <= a.x.max(b.x)) {
                 if meet(xy, *one, *other) {
@@ -180,7 +180,7 @@ impl ProximityScan<'_> {
         let across = if self.face.elements == Elements::Triangles { ACROSS } else { ACROSS_QUADS };
         let mut close: Vec<(u32, [u32; 2], f64)> = Vec::new();
         for t in (0..kept.len()).filter(|t| kept[*t]) {
-            job::look();
+            job::poll();
             let (c, given) = (all.corners[t], all.given[t]);
             for k in 0..3 {
                 // With two sides of the border it is a corner.

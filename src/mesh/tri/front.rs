@@ -272,7 +272,7 @@ pub(crate) fn samples(outline: &Outline, field: &dyn SizeField) -> Cells {
     let unit = outline.edges().map(|e| outline.length(e)).fold(f64::MIN_POSITIVE, f64::max);
     let mut cells = Cells::new(unit, !field.is_even());
     for (k, [a, b]) in outline.edges().enumerate() {
-        job::look();
+        job::poll();
         let (pa, pb) = (outline.p[a as usize], outline.p[b as usize]);
         let (xa, xb) = (outline.xy[a as usize], outline.xy[b as usize]);
         let size = |t: f64| field.size(xa.lerp(xb, t), pa.lerp(pb, t));

@@ -158,7 +158,7 @@ impl<'a> MeshOptimizer<'a> {
             self.smooth(self.settings.smooth.min(4));
             self.flip_all();
         }
-        self.mend_last(job)
+        self.repair_last(job)
     }
 
     /// What lengths are squeezed by among some nodes.

@@ -102,7 +102,7 @@ fn corners(task: &Plot, segments: &[[DVec2; 2]], tree: &Tree) -> PlacedNodes {
     let depth = tree.cells().iter().map(|c| c.level).max().unwrap_or(0);
     let mut found: Vec<Corner> = Vec::new();
     for (k, cell) in tree.cells().iter().enumerate().filter(|(_, c)| c.is_leaf() && c.class != Class::Exterior) {
-        job::look();
+        job::poll();
         let up = depth - cell.level;
         for (i, j) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
             found.push((((cell.at.0 + i) << up, (cell.at.1 + j) << up), k as u32));
@@ -112,7 +112,7 @@ fn corners(task: &Plot, segments: &[[DVec2; 2]], tree: &Tree) -> PlacedNodes {
     found.sort_unstable_by_key(|((i, j), k)| (*j, *i, *k));
     let mut taken = PlacedCells::new(task);
     for run in found.chunk_by(|a, b| a.0 == b.0) {
-        job::look();
+        job::poll();
         let leaves: Vec<&Cell> = run.iter().map(|(_, k)| &tree.cells()[*k as usize]).collect();
         let xy = tree.corner(depth, run[0].0);
         if leaves.iter().all(|c| c.class == Class::Partial) && !tree.holds(xy) {

@@ -82,7 +82,7 @@ impl<'a> Tree<'a> {
         }
         let mut met = vec![Vec::new(); (roots.0 * roots.1) as usize];
         for (k, [a, b]) in segments.iter().enumerate() {
-            job::look();
+            job::poll();
             let (from, to) = (tree.column(a.min(*b)), tree.column(a.max(*b)));
             for j in from.1..=to.1 {
                 for i in from.0..=to.0 {
@@ -93,7 +93,7 @@ impl<'a> Tree<'a> {
             }
         }
         for (k, segments) in met.into_iter().enumerate() {
-            job::look();
+            job::poll();
             let at = (k as u32 % roots.0, k as u32 / roots.0);
             let class = if segments.is_empty() { tree.by_middle(0, at) } else { Class::Partial };
             tree.cells.push(Cell { level: 0, at, class, segments, child: 0 });
@@ -190,7 +190,7 @@ impl<'a> Tree<'a> {
     pub fn balance(&mut self) {
         let mut open: Vec<u32> = (0..self.cells.len() as u32).filter(|k| self.cells[*k as usize].is_leaf()).collect();
         while let Some(k) = open.pop() {
-            job::look();
+            job::poll();
             if !self.cells[k as usize].is_leaf() || self.cells[k as usize].level < 2 {
                 continue;
             }

@@ -66,7 +66,7 @@ fn by_nodes(all: &Triangles, kept: &[bool], nodes: usize) -> Vec<u32> {
     }
     let mut order = vec![0; from[nodes] as usize];
     for t in (0..kept.len()).filter(|t| kept[*t]) {
-        job::look();
+        job::poll();
         let slot = &mut from[first(t)];
         order[*slot as usize] = t as u32;
         *slot += 1;
@@ -86,7 +86,7 @@ impl Triangulation {
         triangulation.across.reserve_exact(n);
         triangulation.locked.reserve_exact(n);
         for k in order.into_iter().map(|k| k as usize) {
-            job::look();
+            job::poll();
             let across = all.across[k].map(|t| if t == NO_TRIANGLE { t } else { number[t as usize] });
             let open = (0..3).filter(|c| across[*c] == NO_TRIANGLE).fold(0, |bits, c| bits | 1 << c);
             for c in all.corners[k] {
@@ -233,7 +233,7 @@ impl Triangulation {
         let mut number = vec![u32::MAX; self.p.len()];
         let mut next = 0;
         for n in 0..self.p.len() as u32 {
-            job::look();
+            job::poll();
             if n < self.fixed || self.at[n as usize] != NO_TRIANGLE {
                 number[n as usize] = next;
                 let (from, to) = (n as usize, next as usize);
@@ -263,7 +263,7 @@ impl Triangulation {
     /// Neighbours know each other, corners turn the right way, every used node knows a triangle of its own.
     pub fn check(&self) -> Result<(), String> {
         for t in (0..self.tri.len() as u32).filter(|t| self.alive(*t)) {
-            job::look();
+            job::poll();
             if self.chart_area(t) <= 0.0 {
                 return Err(format!("triangle {t} is turned over"));
             }

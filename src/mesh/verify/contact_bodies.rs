@@ -173,7 +173,7 @@ impl<'a> Scan<'a> {
     /// The first two faces of two bodies that go through each other.
     fn crossing(&self, (a, b): (usize, usize), faces: &[(usize, usize)]) -> Option<Touch> {
         for (x, y) in faces {
-            job::look();
+            job::poll();
             let (x, y) = ((a, *x), (b, *y));
             let places = self.leaves(x).crossings(self.parts[a].mesh, (self.leaves(y), self.parts[b].mesh), MOST);
             if places.is_empty() {

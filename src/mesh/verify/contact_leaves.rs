@@ -42,7 +42,7 @@ impl Leaves {
         triangles.extend(mesh.quads[range(&own.quads)].iter().flat_map(halves));
         let (mut boxes, mut reach) = (Vec::new(), Vec::new());
         for leaf in triangles.chunks(EACH) {
-            job::look();
+            job::poll();
             let around = leaf.iter().flatten().fold(Box3::EMPTY, |all, n| all.with(mesh.nodes[*n as usize]));
             let longest = |t: &[u32; 3]| {
                 let [a, b, c] = t.map(|n| mesh.nodes[n as usize]);
@@ -188,7 +188,7 @@ impl Leaves {
         let mut found = Vec::new();
         let (mut own, mut others) = (Vec::new(), Vec::new());
         for (a, b) in pairs {
-            job::look();
+            job::poll();
             self.within(mesh, a, &other.boxes[b], &mut own);
             if own.is_empty() {
                 continue;

@@ -21,7 +21,7 @@ use crate::mesh::data::mesh::Mesh;
 use crate::mesh::request::fault::{Close, MeshFault};
 use crate::mesh::request::input::Input;
 use crate::mesh::request::methods::{Elements, Method};
-use crate::mesh::verify::extent::{self, Extent};
+use crate::mesh::verify::covered_area::{self, CoveredArea};
 use crate::surface::faults::CutFault;
 use crate::surface::{Domain, Surface};
 
@@ -65,7 +65,7 @@ pub enum Defect {
     /// Elements that lie over each other in the parameter plane.
     Folded,
     /// The area that the elements cover in the parameter plane, and the one inside the loops of the surface.
-    Extent(f64, f64),
+    CoveredArea(f64, f64),
     /// A node, and how far it is from its place on the surface, model units.
     Misplaced(u32, f64),
 }
@@ -84,7 +84,7 @@ impl Defect {
             Self::Torn => "edges inside are not shared by two elements".to_owned(),
             Self::Euler(found, wanted) => format!("the Euler number inside is {found} and should be {wanted}"),
             Self::Folded => "elements overlap".to_owned(),
-            Self::Extent(found, wanted) => {
+            Self::CoveredArea(found, wanted) => {
                 format!(
                     "elements cover {} of the parameter plane, where the loops of the surface bound {}, or cover other parts of it",
                     real(found),
@@ -284,10 +284,10 @@ const SHARP: f64 = WHOLE_NUMBER;
 
 /// What the elements of a face cover in the parameter plane, if they lie side by side: over rows by their places, and others by their
 /// side where they are turned over in the parameter plane, which alone tells nothing beside a pole.
-fn unfolded(ready: &FaceMesh, mesh: &Mesh) -> Option<Extent> {
+fn unfolded(ready: &FaceMesh, mesh: &Mesh) -> Option<CoveredArea> {
     let FaceGeometry { nodes, surface, .. } = &ready.geometry;
     let ascends = |side: &Vec<f64>| side.windows(2).all(|w| w[1] > w[0]);
-    let mut covered = Extent::default();
+    let mut covered = CoveredArea::default();
     match nodes {
         FaceNodes::Grid(grid, _) if grid.sides.iter().all(ascends) => {
             let (nu, nv) = grid.size();
@@ -315,7 +315,7 @@ fn unfolded(ready: &FaceMesh, mesh: &Mesh) -> Option<Extent> {
 
 /// Whether an element is counter-clockwise in the parameter plane, or at least seen against the normal of the surface. What it covers
 /// is added to the rest.
-fn faces_up(surface: &Surface, (uv, ids, mesh): (&[(f64, f64)], &[u32], &Mesh), corners: &[u32], covered: &mut Extent) -> bool {
+fn faces_up(surface: &Surface, (uv, ids, mesh): (&[(f64, f64)], &[u32], &Mesh), corners: &[u32], covered: &mut CoveredArea) -> bool {
     let at = |k: usize| DVec2::from(uv[corners[k] as usize]);
     let [a, b] = if corners.len() == 3 {
         covered.add(at(0), at(1), at(2));
@@ -345,15 +345,17 @@ fn off_surface(input: &Input, (layout, nodes): (&Layout, &Nodes), (face, ready):
         (FaceNodes::Free(free, ids), Some(inside)) if closes(face) => {
             let triangles = free.triangles.iter().map(|t| t.as_slice());
             let elements = triangles.chain(free.quads.iter().map(|q| q.as_slice()));
-            let Some(out) = extent::left_out(elements, (&free.uv, ids, free.border), &inside.loops) else { return Some(Defect::Torn) };
+            let Some(out) = covered_area::left_out(elements, (&free.uv, ids, free.border), &inside.loops) else {
+                return Some(Defect::Torn);
+            };
             out
         }
-        _ => Extent::default(),
+        _ => CoveredArea::default(),
     };
-    if let Err((found, wanted)) = extent::compare(input, (layout, nodes), face, covered.and(left_out)) {
-        return Some(Defect::Extent(found, wanted));
+    if let Err((found, wanted)) = covered_area::compare(input, (layout, nodes), face, covered.and(left_out)) {
+        return Some(Defect::CoveredArea(found, wanted));
     }
-    extent::misplaced(input, (face, ready), mesh).map(|(node, off)| Defect::Misplaced(node, off))
+    covered_area::misplaced(input, (face, ready), mesh).map(|(node, off)| Defect::Misplaced(node, off))
 }
 
 /// The first face whose elements are not what it asks for, and what is wrong.

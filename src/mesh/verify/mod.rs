@@ -4,6 +4,6 @@ pub mod contact_bodies;
 pub mod contact_edges;
 pub mod contact_leaves;
 pub mod contacts;
-pub mod extent;
+pub mod covered_area;
 pub mod face_check;
 pub mod turned;

@@ -46,7 +46,7 @@ struct Places {
 
 impl Places {
     fn node(&mut self, p: DVec3) -> u32 {
-        job::look();
+        job::poll();
         let key = p.to_array().map(|x| (x + 0.0).to_bits());
         let nodes = &mut self.shape.nodes;
         *self.known.entry(key).or_insert_with(|| {
@@ -287,7 +287,7 @@ impl<'t> Near<'t> {
 
     /// Distance to the nearest one; infinite when there is none. `guess` is where the search begins.
     fn distance(&self, p: DVec3, guess: f64) -> f64 {
-        job::look();
+        job::poll();
         if self.triangles.is_empty() {
             return f64::INFINITY;
         }

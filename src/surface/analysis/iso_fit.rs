@@ -47,7 +47,7 @@ pub(crate) fn fitted(surface: &Surface, line: IsoLine, origin: Origin, tolerance
     for w in stops.windows(2).filter(|w| w[0] < w[1]) {
         let mut open = vec![(w[0], w[1])];
         while let Some((a, b)) = open.pop() {
-            job::look();
+            job::poll();
             let cubic = fit.cubic(a, b);
             if fit.holds(&cubic, a, b) {
                 pieces.push(cubic);
@@ -98,7 +98,7 @@ impl Fit<'_> {
         let mut open = vec![(a, b)];
         let mut seen = 0;
         while let Some((a, b)) = open.pop() {
-            job::look();
+            job::poll();
             let (middle, h) = (0.5 * (a + b), 0.5 * (b - a));
             let (f, c) = (self.jet(middle, OneSided::After), cubic.jet(middle));
             let (off, slope) = (f.p.distance(c.p), f.d1.distance(c.d1));

@@ -19,7 +19,7 @@ const END: f64 = 1.0 / 1000.0;
 
 /// W606 and W607, each at its worst place, from 11×11 samples inside every cell between network lines and kinks, fewer where
 /// there are thousands of cells.
-pub fn review(surface: &Surface, tolerance: &Tolerance) -> Vec<Fault> {
+pub fn validate(surface: &Surface, tolerance: &Tolerance) -> Vec<Fault> {
     if !matches!(surface.domain(), Domain::Square | Domain::Triangle) {
         return Vec::new();
     }
@@ -60,7 +60,7 @@ pub fn review(surface: &Surface, tolerance: &Tolerance) -> Vec<Fault> {
     };
     let mut worst: Option<(f64, usize)> = None;
     for k in 0..jets.len() {
-        job::look();
+        job::poll();
         let (i, j) = (k % us.len(), k / us.len());
         let right = (i + 1 < us.len() && !parted(us[i], us[i + 1], kink_u)).then_some(k + 1);
         let up = (j + 1 < vs.len() && !parted(vs[j], vs[j + 1], kink_v)).then_some(k + us.len());
@@ -85,7 +85,7 @@ pub fn review(surface: &Surface, tolerance: &Tolerance) -> Vec<Fault> {
 impl Surface {
     /// Where it folds over, with the turn of its normal there, or else where it has none, as `review` finds them.
     pub fn fold(&self, tolerance: &Tolerance) -> Option<(DVec3, Option<f64>)> {
-        let found = review(self, tolerance);
+        let found = validate(self, tolerance);
         let place = |fault: &Fault| match fault.of()? {
             SurfaceFault::PatchFolded { at, turn, .. } => Some((*at, Some(*turn))),
             SurfaceFault::PatchSingular { at, .. } => Some((*at, None)),
@@ -131,7 +131,7 @@ fn inside(breaks: &[f64], samples: usize, tolerance: &Tolerance) -> Vec<f64> {
 
 impl Surface {
     /// Warnings found while building (singular or folded patches, oscillation), by sampling 9×9 a cell.
-    pub fn review(&self, tolerance: &Tolerance) -> Vec<Fault> {
-        crate::surface::analysis::validate::review(self, tolerance)
+    pub fn validate(&self, tolerance: &Tolerance) -> Vec<Fault> {
+        crate::surface::analysis::validate::validate(self, tolerance)
     }
 }

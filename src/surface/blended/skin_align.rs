@@ -50,7 +50,7 @@ impl Read {
 pub fn aligned(sections: &[Section], round: bool, tolerance: &Tolerance) -> Result<Vec<Read>> {
     let mut all: Vec<Read> = Vec::with_capacity(sections.len());
     for section in sections {
-        job::look();
+        job::poll();
         let before = all.iter().rev().find_map(|read| if let Read::Curve(chain, turned) = read { Some((chain, *turned)) } else { None });
         let next = match (section, before) {
             (Section::Point(p), _) => Read::Point(*p),

@@ -57,7 +57,7 @@ impl Fit<'_> {
         let mut chosen: Vec<usize> = if self.closed { vec![0, n / 3, 2 * n / 3] } else { vec![0, last] };
         chosen.dedup();
         while chosen.len() < n {
-            job::look();
+            job::poll();
             let off = self.off(&chosen);
             let worst = (0..n).filter(|k| !chosen.contains(k)).max_by(|a, b| off[*a].total_cmp(&off[*b]).then(b.cmp(a)));
             if off.iter().all(|off| *off <= allowed) {
@@ -68,7 +68,7 @@ impl Fit<'_> {
         }
         let mut k = 1;
         while k < chosen.len() && chosen.len() > least {
-            job::look();
+            job::poll();
             if !self.closed && k + 1 == chosen.len() {
                 break;
             }

@@ -51,7 +51,7 @@ pub(crate) trait Footing {
         let mut jet = self.jet(uv);
         let mut best = jet.p.distance_squared(p);
         for _ in 0..Self::STEPS {
-            job::look();
+            job::poll();
             let Some(full) = self.step(&jet, uv, p - jet.p) else { break };
             if self.is_last(&jet, p - jet.p, full) {
                 return (self.hold(uv + full), best.sqrt());

@@ -85,7 +85,7 @@ impl Nearest {
 
     /// The nearest point of the surface.
     pub fn at(&self, p: DVec3) -> Closest {
-        job::look();
+        job::poll();
         match self.surface.domain() {
             Domain::Unbounded => self.foot(p),
             Domain::Loop if self.surface.is_flat() => self.inside_loop(p),
@@ -216,7 +216,7 @@ fn winding(chain: &Chain, whole: (f64, f64), about: DVec3, normal: DVec3) -> f64
     let mut open = vec![(whole, 0)];
     let mut turn = 0.0;
     while let Some(((f0, f1), depth)) = open.pop() {
-        job::look();
+        job::poll();
         let (a, b) = (chain.point(f0) - about, chain.point(f1) - about);
         if (f1 - f0) * chain.length() < a.length() + b.length() || depth == MAX_DEPTH {
             turn += crate::base::math::atan2(a.cross(b).dot(normal), a.dot(b));

@@ -143,7 +143,7 @@ impl Samples {
         let (nx, ny) = made.size();
         for j in (0..ny).step_by(BLOCK) {
             for i in (0..nx).step_by(BLOCK) {
-                job::look();
+                job::poll();
                 let (rows, columns) = ((j, (j + BLOCK).min(ny)), (i, (i + BLOCK).min(nx)));
                 let mut block = Block { rows, columns, around: Box3::EMPTY, reach: 0.0 };
                 for k in block.samples(nx) {

@@ -91,7 +91,7 @@ fn line_bbox(surface: &Surface, a: DVec2, b: DVec2, mut bounds: Boxed) -> Boxed 
     let mut open: VecDeque<(DVec2, DVec2)> = stops.windows(2).map(|w| (a.lerp(b, w[0]), a.lerp(b, w[1]))).collect();
     let mut seen = 0;
     while let Some((a, b)) = open.pop_front() {
-        job::look();
+        job::poll();
         bounds = bounds.and(Box3::of([a, b].map(|uv| surface.point(uv.x, uv.y))));
         let hull = spread_between(surface, a, b).p.bounds();
         let over = (hull.max - bounds.bounds.max).max(bounds.bounds.min - hull.min).max_element();
@@ -153,7 +153,7 @@ impl Search<'_> {
         let (room, gap) = (BOX * bounds.bounds.diagonal(), self.surface.gap());
         let (mut seen, mut spent) = (0, 0);
         while let Some(((u, v), clear)) = open.pop_front() {
-            job::look();
+            job::poll();
             if triangle && u.0 + v.0 >= 1.0 {
                 continue;
             }

@@ -36,8 +36,8 @@ pub struct Turn {
 }
 
 impl StableHash for Turn {
-    fn tell(&self, to: &mut StableHasher) {
-        (self.swap, self.back_x, self.back_y).tell(to);
+    fn hash_into(&self, to: &mut StableHasher) {
+        (self.swap, self.back_x, self.back_y).hash_into(to);
     }
 }
 

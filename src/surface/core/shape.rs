@@ -43,16 +43,16 @@ pub enum Shape {
 }
 
 impl StableHash for Shape {
-    fn tell(&self, to: &mut StableHasher) {
+    fn hash_into(&self, to: &mut StableHasher) {
         match self {
-            Self::Blend(blend) => (0u8, blend).tell(to),
-            Self::Trilateral(trilateral) => (1u8, trilateral).tell(to),
-            Self::Sweep(sweep) => (2u8, sweep).tell(to),
-            Self::Plane(frame) => (3u8, frame).tell(to),
-            Self::Nurbs(net) => (4u8, net).tell(to),
-            Self::Framed(framed) => (5u8, framed).tell(to),
-            Self::Scatter(field) => (6u8, field).tell(to),
-            Self::Joined(joined) => (7u8, joined).tell(to),
+            Self::Blend(blend) => (0u8, blend).hash_into(to),
+            Self::Trilateral(trilateral) => (1u8, trilateral).hash_into(to),
+            Self::Sweep(sweep) => (2u8, sweep).hash_into(to),
+            Self::Plane(frame) => (3u8, frame).hash_into(to),
+            Self::Nurbs(net) => (4u8, net).hash_into(to),
+            Self::Framed(framed) => (5u8, framed).hash_into(to),
+            Self::Scatter(field) => (6u8, field).hash_into(to),
+            Self::Joined(joined) => (7u8, joined).hash_into(to),
         }
     }
 }

@@ -63,8 +63,8 @@ pub(crate) struct Parts {
 crate::content!(Parts { kind, flow, domain, closed, shape, borders, kinks, chains, generated, trim, flipped } but { origin });
 
 impl StableHash for Surface {
-    fn tell(&self, to: &mut StableHasher) {
-        self.0.parts.tell(to);
+    fn hash_into(&self, to: &mut StableHasher) {
+        self.0.parts.hash_into(to);
     }
 }
 

@@ -41,7 +41,7 @@ impl Pair<'_> {
         let mut spots = vec![start];
         let mut h = FIRST * size;
         while spots.len() < MOST {
-            job::look();
+            job::poll();
             let here = spots[spots.len() - 1];
             if h < NUDGE * NUDGE * size {
                 return Err(here.p);

@@ -68,7 +68,7 @@ pub(crate) fn common(a: &mut Sheet, b: &mut Sheet, point: f64, long: f64) -> Res
     let mut search = Search { a, b, point, size, long, touched: Box3::EMPTY, common: Common::default(), looked_at: 0 };
     for i in roots_a {
         for j in &roots_b {
-            job::look();
+            job::poll();
             search.pair(i, *j)?;
         }
     }
@@ -137,7 +137,7 @@ impl Search<'_> {
         let mut gap = f64::INFINITY;
         let mut at = x.enclosure.mid.p;
         for _ in 0..ROUNDS {
-            job::look();
+            job::poll();
             b = y.hold(self.b.patch.foot(self.a.patch.jet(a).p, b).0);
             a = x.hold(self.a.patch.foot(self.b.patch.jet(b).p, a).0);
             at = self.a.patch.jet(a).p;

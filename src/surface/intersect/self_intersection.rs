@@ -144,7 +144,7 @@ impl<'a> Search<'a> {
     }
 
     fn look(&mut self, cost: usize) -> Result<(), Ended> {
-        job::look();
+        job::poll();
         self.looked_at += cost;
         if self.looked_at > MOST_PAIRS { Err(Ended) } else { Ok(()) }
     }

@@ -97,7 +97,7 @@ fn of_two(a: &Surface, b: &Surface, origin: Origin, tolerance: &Tolerance) -> Re
     let (mut curves, mut touches, mut coplanar) = (Vec::new(), Vec::new(), None);
     for x in &mut sheets_a {
         for y in &mut sheets_b {
-            job::look();
+            job::poll();
             if !x.bounds().touches(&y.bounds(), tolerance.point) {
                 continue;
             }
@@ -151,7 +151,7 @@ fn clusters(boxes: &[Box3], point: f64) -> Vec<Box3> {
     for one in boxes {
         let mut whole = *one;
         loop {
-            job::look();
+            job::poll();
             let before = out.len();
             out.retain(|other| {
                 let near = other.touches(&whole, point);

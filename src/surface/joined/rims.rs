@@ -58,7 +58,7 @@ pub fn turn(side: usize, ahead: bool, back_y: bool) -> Turn {
 impl Rim {
     /// The sides of a surface that are curves.
     pub fn all(surface: &Surface) -> Vec<Self> {
-        job::look();
+        job::poll();
         let curve = |side: &usize| !matches!(surface.side(*side), Side::Pole(_));
         (0..4).filter(curve).map(|side| Self::of(surface, side)).collect()
     }

@@ -255,7 +255,7 @@ impl Boundary {
         for w in self.stops().windows(2) {
             let mut open = vec![(w[0], jet(w[0], false)?, w[1], jet(w[1], true)?)];
             while let Some((a, from, b, to)) = open.pop() {
-                job::look();
+                job::poll();
                 let cubics: Vec<[DVec3; 4]> = distances.iter().map(|d| cubic(a, b, &from, &to, *d)).collect();
                 let mut good = true;
                 for probe in PROBES {

@@ -92,7 +92,7 @@ impl<'a> Search<'a> {
         let one = || Cubics { breaks: vec![0.0, 1.0], closed: false };
         let (mut u, mut v) = (one(), one());
         loop {
-            job::look();
+            job::poll();
             let (off_u, off_v) = (self.own_off(&u, true)?, self.own_off(&v, false)?);
             // Both together are hardly nearer than half of what either is off alone.
             if 0.5 * off_u.mean.max(off_v.mean) <= self.within
@@ -184,7 +184,7 @@ impl<'a> Search<'a> {
         for along_u in [true, false] {
             let mut i = 1;
             loop {
-                job::look();
+                job::poll();
                 let old = if along_u { &u } else { &v };
                 if i + 1 >= old.breaks.len() {
                     break;

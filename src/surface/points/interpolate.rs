@@ -53,7 +53,7 @@ pub fn fitted(rows: &[Vec<DVec3>], tangents: &Tangents, origin: Origin, toleranc
     let (mu, mv) = (nu + 2, nv + 2);
     let mut net = vec![DVec4::ZERO; mu * mv];
     for i in 0..mu {
-        job::look();
+        job::poll();
         let column: Vec<DVec3> = lines.iter().map(|line| line[i]).collect();
         let ends = ends_v.as_ref().map_or([None, None], |(first, last)| [Some(first[i]), Some(last[i])]);
         for (j, p) in poles(&column, &spans_v, ends).into_iter().enumerate() {
@@ -136,7 +136,7 @@ fn spans(lines: &[Vec<DVec3>], word: &'static str, origin: Origin, tolerance: &T
     let total: f64 = mean.iter().sum();
     let mut worst: Option<(f64, usize, DVec3)> = None;
     for &k in &live {
-        job::look();
+        job::poll();
         let whole = length(&lines[k]);
         for i in 0..n {
             let (own, common) = (chord(&lines[k], i) / whole, mean[i] / total);

@@ -58,7 +58,7 @@ pub fn scatter(points: &[DVec3], along: Option<DVec3>, origin: Origin, tolerance
     let corner = |k: usize| Corner { at: flat[k] - low, h: places[k].z, slope: gradients[k] };
     let beside = border::opposite(&triangles);
     let made = triangles.iter().zip(beside).flat_map(|(t, others)| {
-        job::look();
+        job::poll();
         pieces(&t.map(corner), others.map(|other| other.map(|k| flat[k] - low)), size)
     });
     let made = made.collect();

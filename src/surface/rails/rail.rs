@@ -43,13 +43,13 @@ pub enum Rail {
 }
 
 impl StableHash for Rail {
-    fn tell(&self, to: &mut StableHasher) {
+    fn hash_into(&self, to: &mut StableHasher) {
         match self {
-            Self::Chain { chain, map, kinks } => (0u8, (chain, map, kinks)).tell(to),
-            Self::Point(p) => (1u8, *p).tell(to),
-            Self::Mixed(sum) => (3u8, sum.as_ref()).tell(to),
+            Self::Chain { chain, map, kinks } => (0u8, (chain, map, kinks)).hash_into(to),
+            Self::Point(p) => (1u8, *p).hash_into(to),
+            Self::Mixed(sum) => (3u8, sum.as_ref()).hash_into(to),
             #[cfg(test)]
-            Self::Formula { at, along_u, .. } => (2u8, (*at, *along_u)).tell(to),
+            Self::Formula { at, along_u, .. } => (2u8, (*at, *along_u)).hash_into(to),
         }
     }
 }

@@ -71,12 +71,12 @@ impl Border {
 crate::content!(Border { side, map, turned });
 
 impl StableHash for Side {
-    fn tell(&self, to: &mut StableHasher) {
+    fn hash_into(&self, to: &mut StableHasher) {
         match self {
-            Self::Chain { chain, from, to: end } => (0u8, (chain, *from, *end)).tell(to),
-            Self::Pole(p) => (1u8, *p).tell(to),
-            Self::Seam => 2u8.tell(to),
-            Self::Free => 3u8.tell(to),
+            Self::Chain { chain, from, to: end } => (0u8, (chain, *from, *end)).hash_into(to),
+            Self::Pole(p) => (1u8, *p).hash_into(to),
+            Self::Seam => 2u8.hash_into(to),
+            Self::Free => 3u8.hash_into(to),
         }
     }
 }

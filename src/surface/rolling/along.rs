@@ -38,7 +38,7 @@ impl Ball {
     fn beside_starts(&self, radius: f64) -> std::result::Result<Vec<Station>, DVec3> {
         let mut all = Vec::with_capacity(self.starts.len());
         for start in &self.starts {
-            crate::base::job::look();
+            crate::base::job::poll();
             all.push(self.grown(start, radius).ok_or(start.at)?);
         }
         if self.closed {
@@ -62,7 +62,7 @@ impl Ball {
         let longest = self.edge.length() / STARTS as f64;
         let (mut step, mut all) = (longest, vec![first]);
         while all.len() < MOST_AROUND {
-            crate::base::job::look();
+            crate::base::job::poll();
             let last = all[all.len() - 1];
             if !(self.holds(&last) && self.leaves(&last) && self.fits(&last, radius)) {
                 return Err(beside(last.center));

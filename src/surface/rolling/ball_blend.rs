@@ -16,10 +16,10 @@ use crate::surface::core::surface::Surface;
 use crate::surface::faults::{BlendFault, NoBlend};
 use crate::surface::intersect::with_surfaces::with_surfaces;
 use crate::surface::rolling::ball::Ball;
+use crate::surface::rolling::ball_surface::rolled;
 use crate::surface::rolling::cut::cut_back;
 use crate::surface::rolling::ends::ended;
 use crate::surface::rolling::largest;
-use crate::surface::rolling::made::rolled;
 
 /// The rounding of the edge in which two surfaces meet: the first one cut back to it, the rounding, the second one cut back.
 ///

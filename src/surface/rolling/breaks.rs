@@ -119,7 +119,7 @@ pub(crate) fn with_sides(ball: &Ball, radius: f64, stations: &[Station]) -> Vec<
     let last = stations.len() - 1;
     let mut all = Vec::with_capacity(stations.len());
     for (i, s) in stations.iter().enumerate() {
-        crate::base::job::look();
+        crate::base::job::poll();
         let (before, after) = (beside(s, -1.0).unwrap_or(*s), beside(s, 1.0).unwrap_or(*s));
         let jumps = (0..2).any(|k| before.rates[k].distance(after.rates[k]) > NUDGE * (before.speed() + after.speed()));
         match (jumps, i) {

@@ -10,7 +10,7 @@ use crate::surface::core::surface::Surface;
 use crate::surface::faults::NoBlend;
 use crate::surface::offset::boundary::border_chains;
 use crate::surface::rolling::ball::Ball;
-use crate::surface::rolling::made::Roll;
+use crate::surface::rolling::ball_surface::Roll;
 use crate::surface::trims::holes::trim;
 use crate::surface::trims::project::{Way, carried};
 

@@ -3,10 +3,10 @@
 pub mod along;
 pub mod ball;
 pub mod ball_blend;
+pub mod ball_surface;
 pub mod breaks;
 pub mod cut;
 pub mod ends;
 pub mod face;
 pub mod largest;
-pub mod made;
 pub mod station;

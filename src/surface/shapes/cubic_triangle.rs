@@ -50,8 +50,8 @@ pub struct Piece {
 }
 
 impl StableHash for Piece {
-    fn tell(&self, to: &mut StableHasher) {
-        (self.corners.map(|c| (c.x, c.y)), self.ordinates).tell(to);
+    fn hash_into(&self, to: &mut StableHasher) {
+        (self.corners.map(|c| (c.x, c.y)), self.ordinates).hash_into(to);
     }
 }
 

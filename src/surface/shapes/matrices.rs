@@ -33,11 +33,11 @@ pub type At = [DMat3; 3];
 pub type Over = [[Interval3; 3]; 3];
 
 impl StableHash for Matrices {
-    fn tell(&self, to: &mut StableHasher) {
-        self.stops.tell(to);
+    fn hash_into(&self, to: &mut StableHasher) {
+        self.stops.hash_into(to);
         for piece in &self.pieces {
-            piece.len().tell(to);
-            piece.iter().for_each(|m| (m.x_axis, m.y_axis, m.z_axis).tell(to));
+            piece.len().hash_into(to);
+            piece.iter().for_each(|m| (m.x_axis, m.y_axis, m.z_axis).hash_into(to));
         }
     }
 }
@@ -59,7 +59,7 @@ impl Matrices {
     }
 
     fn halved(&mut self, (a, b): (f64, f64), of: &mut dyn FnMut(f64) -> DMat3, depth: usize) -> bool {
-        job::look();
+        job::poll();
         let piece = interpolated((a, b), of);
         let off = (0..DEGREE).map(|k| {
             let x = 0.5 * (node(k) + node(k + 1));

@@ -63,10 +63,10 @@ pub struct Sweep {
 crate::content!(Sweep { profile, path });
 
 impl StableHash for Path {
-    fn tell(&self, to: &mut StableHasher) {
+    fn hash_into(&self, to: &mut StableHasher) {
         match self {
-            Self::Straight { by } => (0u8, *by).tell(to),
-            Self::Turn { about, axis, angle } => (1u8, (*about, *axis, *angle)).tell(to),
+            Self::Straight { by } => (0u8, *by).hash_into(to),
+            Self::Turn { about, axis, angle } => (1u8, (*about, *axis, *angle)).hash_into(to),
         }
     }
 }

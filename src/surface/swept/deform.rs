@@ -181,7 +181,7 @@ pub fn own_breaks(chain: &Chain, tolerance: &Tolerance) -> Result<Vec<f64>> {
         let mut n = if several > 1 { 2 * several } else { 1 };
         let at = |k: usize, n: usize| w[0] + (w[1] - w[0]) * k as f64 / n as f64;
         while n < MOST {
-            job::look();
+            job::poll();
             let parts = (0..n).map(|k| part(chain, (at(k, n), at(k + 1, n)), tolerance).map(|p| whole_pieces(&p).len()));
             if parts.collect::<Result<Vec<usize>>>()?.iter().all(|pieces| *pieces == 1) {
                 break;

@@ -227,7 +227,7 @@ impl Leg {
             if from >= f {
                 return normal;
             }
-            job::look();
+            job::poll();
             let turning = path.jet(from).d2.length() / path.length();
             let most = if turning > 0.0 { (TURN / turning).min(STEP) } else { STEP };
             let to = if f - from <= most { f } else { from + most };

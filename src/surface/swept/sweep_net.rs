@@ -330,7 +330,7 @@ fn ribs(
         _ => Vec::new(),
     };
     for (place, (&w, on_guides)) in ws.iter().zip(fractions).enumerate() {
-        job::look();
+        job::poll();
         if let Some(k) = sections.iter().position(|s| s.on_guides[0] == w) {
             made.ribs.push(Rib { w, on_guides, chain: sections[k].chain.clone(), breaks: marks.rows[k].clone() });
             continue;

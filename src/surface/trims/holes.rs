@@ -14,8 +14,8 @@ use crate::surface::data::kind::Domain;
 use crate::surface::faults::{LoopFault, LoopRole, SurfaceFault};
 use crate::surface::rails::boundary;
 use crate::surface::rails::trim_curve::TrimCurve;
-use crate::surface::trims::lone::{Keep, lone};
 use crate::surface::trims::loops::{Ring, crossing, nested, touches};
+use crate::surface::trims::noncontractible::{Keep, noncontractible};
 use crate::surface::trims::trim::{TrimLoop, around, assembled, natural, shifts};
 
 /// The part of a surface inside `outer` (the whole of it when empty) and outside `holes`, each given by the curves of a loop
@@ -36,7 +36,7 @@ pub fn trim(base: &Surface, outer: &[Chain], holes: &[Vec<Chain>], origin: Origi
     if !outer.is_empty() {
         let walk = around(&base, outer, LoopRole::Outer, tolerance)?;
         if walk.winds(&base) {
-            base = lone(&base, outer, Keep::Inside, origin, tolerance)?.ok_or_else(|| goes_round(&base, outer, origin))?;
+            base = noncontractible(&base, outer, Keep::Inside, origin, tolerance)?.ok_or_else(|| goes_round(&base, outer, origin))?;
         } else {
             let ring = Ring::of_chains(outer, None, origin);
             let kept = if unbounded { Vec::new() } else { kept_holes(&base, (&ring, &walk), origin, tolerance)? };
@@ -126,7 +126,8 @@ impl Holes<'_> {
         }
         let whole = assembled(base, walks.iter().take(1).map(TrimLoop::copied).collect(), origin)?;
         for k in &apart {
-            let within = lone(&whole, &holes[*k], Keep::Inside, origin, tolerance)?.ok_or_else(|| goes_round(base, &holes[*k], origin))?;
+            let within = noncontractible(&whole, &holes[*k], Keep::Inside, origin, tolerance)?
+                .ok_or_else(|| goes_round(base, &holes[*k], origin))?;
             for other in (1..rings.len()).filter(|r| *r != new + *k) {
                 let at = place_of(&rings[other], touched(other, new + *k));
                 let foot = closest(&within.untrimmed(), at).uv;
@@ -137,7 +138,8 @@ impl Holes<'_> {
         }
         let mut made = assembled(base, walks, origin)?;
         for k in apart {
-            made = lone(&made, &holes[k], Keep::Outside, origin, tolerance)?.ok_or_else(|| goes_round(base, &holes[k], origin))?;
+            made =
+                noncontractible(&made, &holes[k], Keep::Outside, origin, tolerance)?.ok_or_else(|| goes_round(base, &holes[k], origin))?;
         }
         Ok(made)
     }

@@ -124,10 +124,10 @@ pub(crate) fn touches(rings: &[Ring], new: usize, tolerance: &Tolerance) -> Resu
     let mut found: BTreeMap<(usize, usize), Touch> = BTreeMap::new();
     let mut open: Vec<usize> = Vec::new();
     for k in 0..fences.len() {
-        job::look();
+        job::poll();
         open.retain(|j| fences[*j].reach.max.x + tolerance.point >= fences[k].reach.min.x);
         for &j in &open {
-            job::look();
+            job::poll();
             let (a, b) = if fences[j].ring < fences[k].ring { (&fences[j], &fences[k]) } else { (&fences[k], &fences[j]) };
             if a.ring == b.ring || b.ring < new || !a.reach.touches(&b.reach, tolerance.point) {
                 continue;

@@ -59,7 +59,7 @@ fn runs(rects: &[Rect]) -> Vec<Run> {
         let mut joined = Run { a: rect.a, b: rect.b, parts: 1 };
         let mut i = 0;
         while i < open.len() {
-            job::look();
+            job::poll();
             let run = open[i];
             if beyond(rect.a.0, run.a.1) {
                 done.push(open.swap_remove(i));
@@ -230,7 +230,7 @@ impl Contact<'_> {
         let mut rate = 0.0;
         let mut out: Vec<Sample> = Vec::with_capacity(count);
         for i in 0..count {
-            job::look();
+            job::poll();
             let ta = if i + 1 == count { extent.high } else { extent.low + (extent.high - extent.low) * i as f64 / (count - 1) as f64 };
             let sample = self.sample(ta, guess + rate);
             if let Some(before) = out.last() {

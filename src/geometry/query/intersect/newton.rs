@@ -33,7 +33,7 @@ pub(crate) fn approach(a: &View, b: &View, (mut s, mut t): (f64, f64)) -> Near {
     let (slack_a, slack_b) = (NEWTON_STEP * (ra.1 - ra.0), NEWTON_STEP * (rb.1 - rb.0));
     let mut best: Option<Near> = None;
     for _ in 0..ROUNDS {
-        job::look();
+        job::poll();
         let (ja, jb) = (a.jet(s), b.jet(t));
         let here = Near { ta: s, tb: t, pa: ja.p, pb: jb.p };
         if best.is_none_or(|best| here.gap() < best.gap()) {

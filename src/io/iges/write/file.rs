@@ -20,7 +20,7 @@ pub fn sheet(things: &[Thing], scale: &Scale) -> Result<Sheet, String> {
     maker.sheet.keep(things.iter().flat_map(|thing| [thing.name.as_str(), thing.group.as_str()]));
     let mut groups: Vec<(&str, Vec<u32>)> = Vec::new();
     for thing in things {
-        job::look();
+        job::poll();
         let made = match &thing.shown {
             Shown::Point(p) => Ok(maker.sheet.add(116, 0, Role::Free, Values::new().point(*p / scale.model).int(0))),
             Shown::Curve(chain) => chain.to_curve().map_err(Damage::from).and_then(|curve| maker.curve(&curve, Role::Free, true)),

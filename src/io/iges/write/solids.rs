@@ -101,7 +101,7 @@ impl Maker<'_> {
         for skin in skins.iter().map(|k| &bodies.body.skins[*k]) {
             let mut values = Values::new().int(skin.faces.len() as u32);
             for face in &skin.faces {
-                job::look();
+                job::poll();
                 let made = self.face(bodies, *face, &lists)?;
                 values = values.int(made).int(i64::from(bodies.is_along(*face)));
             }

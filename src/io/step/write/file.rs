@@ -110,7 +110,7 @@ impl Made {
         let still = Motion::translation(DVec3::ZERO);
         records.set_frame((product.motion != still).then(|| product.motion.inverse().in_units(setup.scale.model)));
         for thing in product.things.iter().map(|k| &things[*k]) {
-            job::look();
+            job::poll();
             // What has the name of its place has that of the product, which may stand elsewhere too.
             let name = if product.places.contains(&thing.name) { &product.name } else { &thing.name };
             let own = put(records, thing, name, setup)

@@ -101,7 +101,7 @@ impl Writer<'_> {
         self.edges = self.all_edges(records)?;
         let mut made = Vec::with_capacity(self.bodies.grounds.len());
         for k in 0..self.bodies.grounds.len() {
-            job::look();
+            job::poll();
             let item = self.face(records, k)?;
             self.made.painted.extend(self.bodies.color(k).map(|rgb| Painted { item, rgb, curve: false, over: None, at: None }));
             let layers = self.bodies.layers(k);

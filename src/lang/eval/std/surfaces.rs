@@ -142,7 +142,7 @@ fn over_grid(cx: &mut Cx, curves: Curves, said: &Said) -> Result<Surface, Halt> 
 pub(crate) fn finished(cx: &mut Cx, surface: Surface, notes: &[Fault]) -> Result<Surface, Halt> {
     notes.iter().for_each(|note| cx.say(note));
     let tolerance = cx.tolerance()?;
-    let found = surface.review(&tolerance);
+    let found = surface.validate(&tolerance);
     found.iter().for_each(|warning| cx.say(warning));
     tell_crossing(cx, &[notes, &found].concat(), std::slice::from_ref(&surface), &tolerance);
     Ok(surface)

@@ -51,7 +51,7 @@ impl Work<'_> {
         self.worst = None;
         let mut bad: BTreeMap<u32, Cut> = BTreeMap::new();
         for t in (0..kept.len()).filter(|t| kept[*t]) {
-            job::look();
+            job::poll();
             let c = all.corners[t];
             // At a pole the chart has edges that are points in space, and lines of the surface run into it: what stands on an edge,
             // or has its corners on a line, is no triangle in the end.

@@ -65,7 +65,7 @@ impl Work<'_> {
     pub(crate) fn corners(&self) -> Corners {
         let mut all: Vec<Corner> = Vec::new();
         for cell in self.cells.all().iter().filter(|c| c.is_leaf() && c.class != Class::Exterior) {
-            job::look();
+            job::poll();
             all.extend(box_corners((cell.low, cell.high)).map(|at| Corner { at, border: None, dropped: false }));
         }
         let near = self.cells.near;

@@ -41,7 +41,7 @@ impl Work<'_> {
         let (across, along) = self.ask.chart.surface().curves_of_a_point();
         let worth = CELL * (1 + (across + along) / CURVES) as u64;
         while let Some(k) = open.pop() {
-            job::look();
+            job::poll();
             if self.cells.n_whole() > self.ask.most || self.cells.all().len() > 8 * self.ask.most {
                 return Err(Failure::Trouble(Trouble::Full));
             }
@@ -62,7 +62,7 @@ impl Work<'_> {
     pub(crate) fn cut(&mut self, bad: Vec<(u32, Cut)>) -> Tried<()> {
         let mut open = Vec::new();
         for (k, cut) in bad {
-            job::look();
+            job::poll();
             let first = self.cells.all().len() as u32;
             self.cells.split(k, cut, Why::Bends);
             self.fillings.remove(&k);

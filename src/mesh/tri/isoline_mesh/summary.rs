@@ -16,7 +16,7 @@ impl Work<'_> {
         let mut tally = Tally::default();
         let loops = self.ask.outline.loops.len() as u32;
         for cell in self.cells.all().iter().filter(|c| c.is_leaf()) {
-            job::look();
+            job::poll();
             match cell.class {
                 Class::Exterior => continue,
                 Class::Interior => tally.whole += 1,
@@ -42,7 +42,7 @@ impl Work<'_> {
     pub(crate) fn deciders(&self, corners: &Corners, triangulation: &Triangulation) -> Vec<Decider> {
         let mut found: BTreeMap<Why, Decider> = BTreeMap::new();
         for (corner, node) in corners.all.iter().zip(&corners.node) {
-            job::look();
+            job::poll();
             let Some(n) = node.filter(|n| *n >= triangulation.fixed) else { continue };
             let smallest = |k: &u32| self.cells.all()[*k as usize].width().element_product();
             let leaf = self.cells.around(corner.at).into_iter().min_by(|a, b| smallest(a).total_cmp(&smallest(b)));

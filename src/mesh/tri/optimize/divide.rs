@@ -48,7 +48,7 @@ impl<'a> MeshOptimizer<'a> {
                 settled = true;
                 (self.limit_check, self.settings.wanted) = (Some(limit_check), wanted);
                 self.changed = Pending::all(self.triangulation.p.len());
-                self.mend_last(job)?;
+                self.repair_last(job)?;
                 bad = self.broken(limit_check, &bad);
             }
             if bad.is_empty() || !self.are_few(&bad) {
@@ -56,7 +56,7 @@ impl<'a> MeshOptimizer<'a> {
             }
             let mut divided = false;
             for &t in &bad {
-                job::look();
+                job::poll();
                 if !self.triangulation.alive(t) {
                     continue;
                 }

@@ -19,7 +19,7 @@ impl MeshOptimizer<'_> {
         open.reverse();
         let mut left = 4 * self.triangulation.tri.len() + 64;
         while let Some(t) = open.pop() {
-            job::look();
+            job::poll();
             if !self.triangulation.alive(t) {
                 continue;
             }

@@ -47,7 +47,7 @@ struct Swept {
 
 impl MeshOptimizer<'_> {
     /// Works on bad triangles, and then on the worst that are left.
-    pub fn mend_last(&mut self, job: &Job) -> Result<()> {
+    pub fn repair_last(&mut self, job: &Job) -> Result<()> {
         self.repair();
         if self.last(job)? > 0 {
             self.repair();
@@ -81,7 +81,7 @@ impl MeshOptimizer<'_> {
         let mut best: Option<(usize, Swept)> = None;
         let changes = self.changes(t);
         for (k, change) in changes.iter().enumerate() {
-            job::look();
+            job::poll();
             let (nodes, _) = self.apply(change, &nodes);
             let most = best.as_ref().map_or(before.bad * LESS, |best| best.1.bad);
             if let Some(swept) = self.sweep(&nodes, (before, most)) {
@@ -172,7 +172,7 @@ impl MeshOptimizer<'_> {
             }
             let mut moved = false;
             for &node in nodes {
-                job::look();
+                job::poll();
                 if !self.triangulation.is_free(node) {
                     continue;
                 }

@@ -27,7 +27,7 @@ impl MeshOptimizer<'_> {
         bad.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let mut changes = 0;
         for (_, t) in bad {
-            job::look();
+            job::poll();
             for _ in 0..3 {
                 if !self.triangulation.alive(t) || self.worth(t) >= self.settings.wanted {
                     break;

@@ -17,7 +17,7 @@ impl MeshOptimizer<'_> {
         for _ in 0..rounds {
             let mut moved = false;
             for node in self.active.take() {
-                job::look();
+                job::poll();
                 if !self.triangulation.is_free(node) || self.triangulation.at[node as usize] == NO_TRIANGLE {
                     continue;
                 }

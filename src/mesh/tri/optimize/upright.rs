@@ -17,7 +17,7 @@ impl MeshOptimizer<'_> {
             let folded: Vec<u32> = (0..self.triangulation.tri.len() as u32).filter(|t| self.is_folded(*t)).collect();
             let mut flipped = false;
             for t in folded {
-                job::look();
+                job::poll();
                 flipped |= self.is_folded(t) && !self.lies_upright(self.triangulation.tri[t as usize]) && self.flip_upright(t);
             }
             if !flipped {

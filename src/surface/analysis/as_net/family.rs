@@ -163,7 +163,7 @@ impl Spreading<'_, '_> {
         let mut breaks = self.fixed.clone();
         let mut best: Option<Breaks> = None;
         for round in 0..ROUNDS {
-            job::look();
+            job::poll();
             let off = self.off(&breaks, &self.splines(&breaks));
             let allowed = SAMPLED * self.family.allowed;
             let fits = off.iter().all(|off| *off <= allowed);
@@ -241,7 +241,7 @@ impl Spreading<'_, '_> {
         let mut open = vec![(breaks.at[k], breaks.at[k + 1])];
         let (mut seen, mut largest) = (0, 0.0_f64);
         while let Some((a, b)) = open.pop() {
-            job::look();
+            job::poll();
             let (middle, h) = (0.5 * (a + b), 0.5 * (b - a));
             let line = self.family.courses[c].line(a, b);
             let [p, slope, ..] = breaks.jet(spline, k, middle);

@@ -63,7 +63,7 @@ fn without_thin(triangles: Vec<[usize; 3]>, flat: &[DVec2], least: f64) -> Vec<[
     let mut on_border: BTreeSet<usize> = open.iter().map(|side| side.0).collect();
     let mut gone = vec![false; triangles.len()];
     while let Some((a, b)) = open.pop_first() {
-        job::look();
+        job::poll();
         let Some(&t) = of_side.get(&(a, b)) else { continue };
         let Some(&apex) = triangles[t].iter().find(|p| **p != a && **p != b) else { continue };
         let (side, arm) = (flat[b] - flat[a], flat[apex] - flat[a]);

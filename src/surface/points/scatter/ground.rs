@@ -103,7 +103,7 @@ fn once_each(all: &[DVec3], points: &[DVec3], origin: Origin, tolerance: &Tolera
     let mut gone = vec![false; all.len()];
     let mut over: Option<(usize, usize)> = None;
     for (i, &a) in order.iter().enumerate() {
-        job::look();
+        job::poll();
         let near = order[i + 1..].iter().take_while(|b| all[**b].x - all[a].x <= tolerance.point);
         for &b in near.filter(|b| all[**b].truncate().distance(all[a].truncate()) <= tolerance.point) {
             let (first, last) = (a.min(b), a.max(b));

@@ -50,7 +50,7 @@ fn around(beside: &[Vec<usize>], k: usize) -> Vec<usize> {
 }
 
 fn slope(points: &[DVec3], k: usize, near: &[usize]) -> DVec2 {
-    job::look();
+    job::poll();
     let arms: Vec<DVec3> = near.iter().map(|n| points[*n] - points[k]).collect();
     let unit = arms.iter().map(|d| d.truncate().length()).sum::<f64>() / arms.len().max(1) as f64;
     if unit <= 0.0 {

@@ -29,7 +29,7 @@ pub enum About {
 }
 
 /// A line as it would be written, and what it means.
-pub fn told(line: &str, docs: &str) -> String {
+pub fn hover_text(line: &str, docs: &str) -> String {
     format!("```text\n{line}\n```\n{}", docs.trim()).trim_end().to_owned()
 }
 
@@ -66,7 +66,7 @@ pub(crate) fn about(scripts: &Scripts<'_>, at: usize) -> Option<About> {
     }
     if let Some((_, shape)) = here.locals.iter().rev().find(|(name, _)| name == word && !calls) {
         let shown = shape.signature();
-        return Some(About::Words(told(&format!("{word}{}{shown}", if shown.is_empty() { "" } else { ": " }), "")));
+        return Some(About::Words(hover_text(&format!("{word}{}{shown}", if shown.is_empty() { "" } else { ": " }), "")));
     }
     of_name(scripts, word, calls).or_else(|| of_language(word, calls).map(About::Words))
 }
@@ -77,7 +77,7 @@ fn of_name(scripts: &Scripts<'_>, word: &str, calls: bool) -> Option<About> {
     let entry = home.declared.get(word)?;
     if entry.keyword == Keyword::Fn {
         let function = Function::of_script(scripts, 0, word)?;
-        return Some(About::Words(told(&format!("fn {}", function.signature), &function.docs)));
+        return Some(About::Words(hover_text(&format!("fn {}", function.signature), &function.docs)));
     }
     if calls && builtins().any(|b| b.name == word) {
         return None;
@@ -110,21 +110,21 @@ fn of_member(scripts: &Scripts<'_>, shape: &Shape, word: &str, calls: bool) -> O
     match shape {
         Shape::Module(module) => {
             return match Function::of_script(scripts, *module, word) {
-                Some(function) => Some(told(&format!("fn {}", function.signature), &function.docs)),
-                None => of_declared(scripts, *module, word).map(|(line, docs)| told(&line, &docs)),
+                Some(function) => Some(hover_text(&format!("fn {}", function.signature), &function.docs)),
+                None => of_declared(scripts, *module, word).map(|(line, docs)| hover_text(&line, &docs)),
             };
         }
         Shape::Record(keys) => {
             if let Some((_, of)) = keys.iter().find(|(key, _)| key == word) {
-                return Some(told(&format!("{word}: {}", of.signature()), ""));
+                return Some(hover_text(&format!("{word}: {}", of.signature()), ""));
             }
         }
         _ => {}
     }
     let field = fields().find(|f| f.name == word && f.params.first().is_some_and(|p| shape.has_fields_of(p.ty)));
     match (field, Function::of_script(scripts, 0, word)) {
-        (Some(field), _) if !calls || builtins().all(|b| b.name != word) => Some(told(&field.signature(), field.docs)),
-        (_, Some(function)) => Some(told(&format!("fn {}", function.signature), &function.docs)),
+        (Some(field), _) if !calls || builtins().all(|b| b.name != word) => Some(hover_text(&field.signature(), field.docs)),
+        (_, Some(function)) => Some(hover_text(&format!("fn {}", function.signature), &function.docs)),
         _ => of_language(word, true),
     }
 }
@@ -135,14 +135,14 @@ fn of_language(word: &str, calls: bool) -> Option<String> {
         return Some(format!("```loft\n{}\n```\n{}", keyword.form, keyword.docs));
     }
     let found = builtins().find(|b| b.name == word).or_else(|| fields().find(|b| b.name == word))?;
-    Some(told(&found.signature(), found.docs))
+    Some(hover_text(&found.signature(), found.docs))
 }
 
 fn of_setting(setting: &Setting) -> String {
     let range = range(setting);
     let range = if range.is_empty() { String::new() } else { format!("\n\nRange: {range}.") };
     let default = if setting.default.is_empty() { String::new() } else { format!("\n\nDefault: {}.", setting.default) };
-    told(&format!("{}: {}", setting.key, setting.ty.signature()), &format!("{}{range}{default}", setting.docs.trim()))
+    hover_text(&format!("{}: {}", setting.key, setting.ty.signature()), &format!("{}{range}{default}", setting.docs.trim()))
 }
 
 fn of_parameter(function: &Function, parameter: &Parameter) -> String {
@@ -151,5 +151,5 @@ fn of_parameter(function: &Function, parameter: &Parameter) -> String {
         "use" => "A param of the module.".to_owned(),
         name => format!("An argument of `{name}`."),
     };
-    told(&parameter.signature(), &format!("{}\n\n{of}{range}", parameter.docs.trim()))
+    hover_text(&parameter.signature(), &format!("{}\n\n{of}{range}", parameter.docs.trim()))
 }

@@ -133,7 +133,7 @@ fn refined(ball: &Ball, radius: f64, stations: Vec<Station>, origin: Origin) -> 
     let mut done = vec![stations[0]];
     let mut open: Vec<Station> = stations[1..].iter().rev().copied().collect();
     while let Some(next) = open.pop() {
-        job::look();
+        job::poll();
         let last = done[done.len() - 1];
         if next.center == last.center {
             done.push(next);

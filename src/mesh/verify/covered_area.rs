@@ -24,14 +24,14 @@ const PROBES: usize = 32;
 
 /// Area and first moments of a part of the parameter plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Extent {
+pub struct CoveredArea {
     /// Area.
     pub area: f64,
     /// ∬ (u, v).
     pub moment: DVec2,
 }
 
-impl Extent {
+impl CoveredArea {
     /// Adds a triangle.
     pub fn add(&mut self, a: DVec2, b: DVec2, c: DVec2) {
         self.add_times(1.0, a, b, c);
@@ -66,7 +66,7 @@ pub fn left_out<'a>(
     elements: impl Iterator<Item = &'a [u32]>,
     (uv, ids, border): (&[(f64, f64)], &[u32], usize),
     around: &[[u32; 2]],
-) -> Option<Extent> {
+) -> Option<CoveredArea> {
     let mut order: Vec<u32> = (0..border as u32).collect();
     order.sort_unstable_by_key(|n| ids[*n as usize]);
     let mut twice = vec![false; border];
@@ -87,7 +87,7 @@ pub fn left_out<'a>(
     around.iter().for_each(|[a, b]| count(*a, *b, -1));
     edges.sort_unstable();
     let mut left: Vec<(u32, u32, i32)> = Vec::new();
-    let mut out = Extent::default();
+    let mut out = CoveredArea::default();
     for same in edges.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
         let (a, b, sum) = (same[0].0, same[0].1, same.iter().map(|e| e.2).sum::<i32>());
         let [p, q] = [a, b].map(|n| DVec2::from(uv[n as usize]));
@@ -108,8 +108,8 @@ pub fn left_out<'a>(
 pub type Place = (DVec2, f64);
 
 /// What a face must cover: the polygons through the places of its border nodes, loop by loop.
-pub fn inside(loops: &[Vec<Place>]) -> (Extent, Extent) {
-    let (mut wanted, mut slack) = (Extent::default(), Extent::default());
+pub fn inside(loops: &[Vec<Place>]) -> (CoveredArea, CoveredArea) {
+    let (mut wanted, mut slack) = (CoveredArea::default(), CoveredArea::default());
     let first = loops.iter().flatten().next().map_or(DVec2::ZERO, |p| p.0);
     let reach = loops.iter().flatten().map(|p| (p.0 - first).abs()).fold(DVec2::ZERO, DVec2::max);
     for polygon in loops {
@@ -129,14 +129,14 @@ pub fn inside(loops: &[Vec<Place>]) -> (Extent, Extent) {
 }
 
 /// Whether what elements cover is what they must, as far as that is known.
-pub fn agrees(covered: Extent, (wanted, slack): (Extent, Extent)) -> bool {
+pub fn agrees(covered: CoveredArea, (wanted, slack): (CoveredArea, CoveredArea)) -> bool {
     let off = (covered.moment - wanted.moment).abs();
     (covered.area - wanted.area).abs() <= slack.area && off.x <= slack.moment.x && off.y <= slack.moment.y
 }
 
 /// Whether what the elements of a face cover is what the loops of its surface bound; else both areas. Places of border nodes are
 /// estimated, and looked for on the surface only where the estimate does not agree.
-pub(crate) fn compare(input: &Input, of: (&Layout, &Nodes), face: &Face, covered: Extent) -> std::result::Result<(), (f64, f64)> {
+pub(crate) fn compare(input: &Input, of: (&Layout, &Nodes), face: &Face, covered: CoveredArea) -> std::result::Result<(), (f64, f64)> {
     if agrees(covered, inside(&loops(input, of, face, false))) {
         return Ok(());
     }

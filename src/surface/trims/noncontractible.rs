@@ -57,7 +57,13 @@ impl TrimLoop {
 /// The part of a surface that a loop bounds alone, or the rest; `None` where there is border on both sides of it.
 ///
 /// On a surface without any border the smaller part is what a loop bounds.
-pub(crate) fn lone(base: &Surface, chains: &[Chain], keep: Keep, origin: Origin, tolerance: &Tolerance) -> Result<Option<Surface>> {
+pub(crate) fn noncontractible(
+    base: &Surface,
+    chains: &[Chain],
+    keep: Keep,
+    origin: Origin,
+    tolerance: &Tolerance,
+) -> Result<Option<Surface>> {
     let Some(points) = beside(base, chains, tolerance) else { return Ok(None) };
     let [a, b] = points.map(|p| divide(base, chains, p, origin, tolerance));
     let (a, b) = (a?, b?);

@@ -1,4 +1,4 @@
-//! Every stretch of the edges of some surfaces with who uses it: what is free, bent or shared, for showing.
+//! The pieces of the edges of some surfaces with who uses it: what is free, bent or shared, for showing.
 
 use std::collections::BTreeSet;
 
@@ -8,7 +8,7 @@ use crate::base::tolerance::Tolerance;
 use crate::network::Network;
 use crate::surface::Domain;
 
-/// What a stretch of an edge is to the faces around it.
+/// What a piece of an edge is to the faces around it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Meeting {
     /// One face only.
@@ -23,9 +23,9 @@ pub enum Meeting {
     Crowded,
 }
 
-/// A stretch between two junctions.
+/// A piece between two junctions.
 #[derive(Clone, Debug)]
-pub struct Stretch {
+pub struct EdgePiece {
     /// Its geometry.
     pub track: Track,
     /// Arc lengths on the track where it begins and ends, ascending.
@@ -39,11 +39,11 @@ pub struct Stretch {
 }
 
 impl Model {
-    /// Stretches of the edges of some surfaces; faces of other surfaces do not count.
+    /// Pieces of the edges of some surfaces; faces of other surfaces do not count.
     ///
     /// One long side against several shorter ones is cut where they end, as in [`Model::shell`]; borders up to `near` apart are
     /// shared.
-    pub fn stretches(&self, members: &BTreeSet<SurfaceId>, near: f64, network: &Network, tolerance: &Tolerance) -> Vec<Stretch> {
+    pub fn edge_pieces(&self, members: &BTreeSet<SurfaceId>, near: f64, network: &Network, tolerance: &Tolerance) -> Vec<EdgePiece> {
         let (edges, joins) = self.joins(members, near, network, tolerance);
         let n = joins.pieces.segments.len();
         let mut users: Vec<Vec<SurfaceId>> = vec![Vec::new(); n];
@@ -68,14 +68,14 @@ impl Model {
         };
         let members: Vec<SurfaceId> = members.iter().copied().collect();
         let turns = self.turns_across(&members, (&edges, &joins));
-        let stretch = |(k, segment): (usize, &super::segments::Segment)| Stretch {
+        let piece = |(k, segment): (usize, &super::segments::Segment)| EdgePiece {
             track: joins.parts[segment.track].track.clone(),
             s: segment.s,
             meeting: meeting(k),
             surfaces: users[k].clone(),
             turn: turns[k],
         };
-        joins.pieces.segments.iter().enumerate().filter(|(k, _)| !users[*k].is_empty()).map(stretch).collect()
+        joins.pieces.segments.iter().enumerate().filter(|(k, _)| !users[*k].is_empty()).map(piece).collect()
     }
 
     /// Whether an edge is on a side of its patch that is not a side of the whole surface.

@@ -78,7 +78,7 @@ fn proved(surface: &Surface, bounds: Box3) -> Boxed {
         vs.windows(2).flat_map(|v| us.windows(2).map(move |u| ((u[0], u[1]), (v[0], v[1])))).collect();
     let (room, mut seen) = (DVec3::splat(BOX * grown.bounds.diagonal()), 0);
     while let Some((u, v)) = open.pop_front() {
-        job::look();
+        job::poll();
         if triangle && u.0 + v.0 >= 1.0 {
             continue;
         }
