@@ -102,8 +102,8 @@ const OUTSIDE: &[&str] = &["std::fs", "std::env", "std::time", "println!", "epri
 const CEILINGS: &[(&str, usize)] = &[
     ("base", 4_400),
     ("geometry", 6_000),
-    ("network", 4_700),
-    ("surface", 27_800),
+    ("network", 4_900),
+    ("surface", 27_600),
     ("model", 6_750),
     ("mesh", 25_400),
     ("io", 17_200),
@@ -370,7 +370,7 @@ fn documents_name_files_that_exist() {
     for page in pages.iter().filter(|page| page.extension().is_some_and(|e| e == "md")) {
         let text = fs::read_to_string(page).expect("a page can be read");
         for (number, line) in text.lines().enumerate() {
-            for name in line.split('`').skip(1).step_by(2).filter(|name| name.ends_with(".rs") && !name.contains(['<', ' ', '*'])) {
+            for name in line.split('`').skip(1).step_by(2).filter(|name| name.ends_with(".rs") && !name.contains(['<', ' ', '*', '{'])) {
                 if !paths.iter().any(|path| path.ends_with(&format!("/{name}"))) {
                     found.push(format!("{}:{}: {name}", page.display(), number + 1));
                 }

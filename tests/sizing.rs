@@ -295,7 +295,7 @@ fn it_is_told_what_decided_where() {
         words.iter().for_each(|w| assert!(line.contains(w), "{line}"));
     };
     told("face 0 of s0", &["delaunay", " by size 0.1 near (10, 3, 0), one at (", " by size 0.5 in the box (0, 0, -1)"]);
-    told("strip of c1", &["by sizes along it", "steps 0.100 to", "% by size 0.1 near (10, 3, 0)"]);
+    told("strip of c1", &["by sizes along it", "lengths of 0.100 to", "% by size 0.1 near (10, 3, 0)"]);
     told("strip of c0", &["% by the size", "% by size 0.5 in the box"]);
     told("strip of c5", &["8 steps, by the size"]);
     plan.settings.method = Some((Method::Mapped, Origin::NONE));

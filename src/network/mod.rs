@@ -16,6 +16,7 @@ mod layout;
 pub mod meet;
 mod near;
 pub mod net;
+pub mod net_fault;
 pub mod no_flow;
 mod ring_way;
 mod rings;

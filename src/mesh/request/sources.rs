@@ -6,6 +6,7 @@
 use glam::DVec3;
 
 use crate::base::bbox::Box3;
+use crate::base::tolerance::WHOLE_NUMBER;
 use crate::base::work;
 use crate::network::Chain;
 
@@ -165,7 +166,9 @@ impl Sources {
     /// the curve is no further from the chord than the ellipse of that length about its ends.
     pub fn holds(&self, item: u32, (a, b): (DVec3, DVec3), length: f64) -> bool {
         let source = &self.items[item as usize];
-        let aside = 0.5 * (length * length - a.distance_squared(b)).max(0.0).sqrt();
+        let chord = a.distance(b);
+        let is_straight = length <= chord * (1.0 + WHOLE_NUMBER);
+        let aside = if is_straight { 0.0 } else { 0.5 * (length * length - chord * chord).sqrt() };
         source.size == self.least && [a, b].iter().all(|p| source.body.distance(*p) + aside <= source.radius)
     }
 

@@ -6,13 +6,13 @@ use crate::base::fault::Fault;
 use crate::base::origin::Origin;
 use crate::base::tolerance::{NUDGE, Tolerance};
 use crate::network::Chain;
+use crate::network::net_fault::NetFault;
 use crate::surface::closest::nearest::Nearest;
 use crate::surface::core::shape::Shape;
 use crate::surface::core::surface::Surface;
 use crate::surface::data::breaks::chain_breaks;
 use crate::surface::data::kind::SurfaceKind;
 use crate::surface::data::one_sided::OneSided;
-use crate::surface::faults::NetFault;
 use crate::surface::rails::rail::Rail;
 use crate::surface::shapes::blend::Blend;
 
