@@ -60,5 +60,6 @@ mod step_out;
 mod support;
 mod surface;
 mod sweeps;
+mod triangulations;
 mod trims;
 mod walls;

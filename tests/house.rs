@@ -104,7 +104,7 @@ const CEILINGS: &[(&str, usize)] = &[
     ("network", 3_800),
     ("surface", 25_750),
     ("model", 6_400),
-    ("mesh", 24_600),
+    ("mesh", 25_650),
     ("io", 16_800),
     ("draw", 3_000),
     ("lang", 29_500),
