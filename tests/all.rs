@@ -33,6 +33,7 @@ mod intersect_surfaces;
 mod io;
 mod isoline;
 mod joins;
+mod layouts;
 mod library;
 mod lists;
 mod lsp;
