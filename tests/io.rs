@@ -316,6 +316,7 @@ fn parts_of_order_2_are_whole_in_formats_without_mid_nodes() {
     let outcome = script::outcome("parts.loft", script.as_bytes(), &[], &disk);
     assert!(outcome.report.ok, "{}", outcome.drawn(false, false));
     let mesh = &outcome.meshes[0].1;
+    mesh.check().unwrap();
     assert!(mesh.order == 2 && mesh.corner_count() == 50, "{} corner nodes", mesh.corner_count());
     let read = obj_read::read(text_of("a.obj", mesh).0.as_bytes()).unwrap();
     assert_eq!((read.polygons.len(), read.vertices.len()), (mesh.triangles.len() + mesh.quads.len(), 50));

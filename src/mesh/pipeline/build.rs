@@ -138,7 +138,9 @@ impl Outline {
                 remarks.extend(contact_bodies::find(input, &bodies, leaves).into_iter().map(Remark::Touch));
             }
         }
-        Ok(Built { remarks, ..merge(input, parts)? })
+        let built = Built { remarks, ..merge(input, parts)? };
+        debug_assert_eq!(built.mesh.check(), Ok(()));
+        Ok(built)
     }
 }
 
