@@ -40,6 +40,7 @@ mod lsp;
 mod mesh;
 mod mesh_invariants;
 mod meshing_numbers;
+mod mutations;
 mod narrow;
 mod nearest;
 mod net_forms;
