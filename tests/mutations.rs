@@ -22,7 +22,7 @@ use lofting::mesh::chart::parametric_surface::{ParametricSurface, UniformSize};
 use lofting::mesh::tri::build::{Lattice, Task, triangulate};
 
 use crate::support::mutate::{Random, mutated};
-use crate::support::outlines::{CARE, Waves, sound};
+use crate::support::outlines::{CARE, Waves, add_loop, sound};
 
 /// Seconds of one file: of a release build, and of one with little optimisation beside other tests.
 const SECONDS: f64 = if cfg!(debug_assertions) { 20.0 } else { 2.0 };
@@ -164,35 +164,48 @@ fn mutated_files_never_break_the_reader_of_json() {
     });
 }
 
+/// A polygon (`true`) or a polyline.
+type Course = (bool, Vec<DVec2>);
+
 /// Loops and lines of an outline: `loop` or `line` begins one, each line after it has x and y. What is none of these is left out,
 /// and so are numbers far beyond those of a chart.
-fn outline_of(bytes: &[u8], surface: &dyn ParametricSurface) -> Outline {
-    let mut outline = Outline::default();
-    let (mut first, mut is_loop) = (0, true);
-    let end = |outline: &mut Outline, first: u32, is_loop: bool| {
-        let last = outline.xy.len() as u32;
-        if last <= first + if is_loop { 2 } else { 1 } {
-            outline.xy.truncate(first as usize);
-            outline.p.truncate(first as usize);
-            return;
-        }
-        let ways = (first..last - 1).map(|n| [n, n + 1]);
-        if is_loop { outline.loops.extend(ways.chain([[last - 1, first]])) } else { outline.lines.extend(ways) }
-    };
+fn courses_of(bytes: &[u8]) -> Vec<Course> {
+    let mut courses: Vec<Course> = Vec::new();
     for line in String::from_utf8_lossy(bytes).lines() {
         let words: Vec<&str> = line.split_whitespace().collect();
+        let numbers = words.iter().map(|word| word.parse::<f64>()).collect::<Vec<_>>();
         if let ["loop" | "line"] = words[..] {
-            end(&mut outline, first, is_loop);
-            (first, is_loop) = (outline.xy.len() as u32, words == ["loop"]);
-        } else if let [Ok(x), Ok(y)] = words.iter().map(|word| word.parse::<f64>()).collect::<Vec<_>>()[..]
+            courses.push((words == ["loop"], Vec::new()));
+        } else if let ([Ok(x), Ok(y)], Some((_, places))) = (&numbers[..], courses.last_mut())
             && x.abs().max(y.abs()) <= 1e6
         {
-            outline.xy.push(DVec2::new(x, y));
-            outline.p.push(surface.point(DVec2::new(x, y)));
+            places.push(DVec2::new(*x, *y));
         }
     }
-    end(&mut outline, first, is_loop);
+    courses.retain(|(is_loop, places)| places.len() > if *is_loop { 2 } else { 1 });
+    courses
+}
+
+/// The outline with steps of about a size along its loops.
+fn outline_of(courses: &[Course], surface: &dyn ParametricSurface, size: f64) -> Outline {
+    let mut outline = Outline::default();
+    for (is_loop, places) in courses {
+        if *is_loop {
+            add_loop(&mut outline, surface, places, size);
+            continue;
+        }
+        let first = outline.xy.len() as u32;
+        outline.xy.extend(places);
+        outline.p.extend(places.iter().map(|xy| surface.point(*xy)));
+        outline.lines.extend((first..first + places.len() as u32 - 1).map(|n| [n, n + 1]));
+    }
     outline
+}
+
+/// Whether an edge runs through a node, but for rounding.
+fn is_met(outline: &Outline, edge: [u32; 2]) -> bool {
+    let [p, q] = edge.map(|n| outline.xy[n as usize]);
+    outline.xy.iter().any(|r| *r != p && *r != q && in_line(p, *r, q) && (*r - p).dot(*r - q) < 0.0)
 }
 
 /// Triangles of points and edges: neighbours know each other, the edges are there, and they count as a disc does. Whether each edge is
@@ -221,49 +234,81 @@ fn fills_its_hull(all: &Triangles, outline: &Outline) -> bool {
         .collect();
     let mut whole = true;
     for [a, b] in outline.edges().filter(|[a, b]| !given.contains(&(*a, *b))) {
-        let [p, q] = [a, b].map(|n| outline.xy[n as usize]);
-        let on = |r: &DVec2| *r != p && *r != q && in_line(p, *r, q) && (*r - p).dot(*r - q) < 0.0;
-        assert!(outline.xy.iter().any(on), "the edge from {a} to {b} is not there");
+        assert!(is_met(outline, [a, b]), "the edge from {a} to {b} is not there");
         whole = false;
     }
     whole
 }
 
+/// Whether each edge of an outline is one side of its triangulation; `None` where it has none.
+fn edges_are_sides(outline: &Outline) -> Option<bool> {
+    let all = points(&outline.xy, &outline.edges().collect::<Vec<_>>()).ok()?;
+    Some(fills_its_hull(&all, outline))
+}
+
+/// The documentation of `points` says so; the triangulation after it panics in the second of these files.
 #[test]
-fn mutated_files_never_break_the_triangulation() {
-    let files = corpus(&["data/mutations/outlines"], &["txt"]);
-    mutate("outlines", &files, (0x07A1, 150, 8), |bytes| {
-        let surface = Waves(if bytes.len() % 2 == 0 { 0.0 } else { 0.3 });
-        let outline = outline_of(bytes, &surface);
-        if outline.loops.is_empty() {
-            return false;
-        }
-        let whole = points(&outline.xy, &outline.edges().collect::<Vec<_>>()).is_ok_and(|all| fills_its_hull(&all, &outline));
-        let (low, high) = outline.xy.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(a, b), q| (a.min(*q), b.max(*q)));
-        let field = UniformSize((high - low).max_element() / 12.0);
-        let task = Task {
-            chart_surface: &surface,
-            field: &field,
-            outline: &outline,
-            lattice: [Lattice::Triangles, Lattice::Squares, Lattice::Tree][bytes.len() % 3],
-            settings: CARE,
-            most: 20_000,
-            limit_check: None,
-        };
-        // Too much work is an answer, too.
-        match Budget::new(WORK).within(|| triangulate(&task, &Job::new()).unwrap()) {
-            Ok(Ok(made)) => {
-                // Where an edge runs through a node the loops bound nothing, which the check of the face tells; layouts cut borders there. A
-                // line may be anywhere here, in the mesher only inside.
-                if whole {
-                    made.triangulation.check().unwrap();
-                }
-                if whole && outline.lines.is_empty() {
-                    sound(&made.triangulation, &outline, None).unwrap();
-                }
-                true
+#[ignore = "edges through a point are taken in two parts"]
+fn an_edge_through_a_node_is_refused() {
+    for name in ["edge_through_a_node.txt", "loop_through_its_node.txt"] {
+        let bytes = std::fs::read(root("data/mutations/outlines").join(name)).unwrap();
+        let outline = outline_of(&courses_of(&bytes), &Waves(0.0), f64::INFINITY);
+        assert_eq!(edges_are_sides(&outline), None, "{name}");
+    }
+}
+
+/// Whether an outline was triangulated; panics where the triangulation is not sound.
+fn triangulated(bytes: &[u8]) -> bool {
+    let surface = Waves(if bytes.len() % 2 == 0 { 0.0 } else { 0.3 });
+    let courses = courses_of(bytes);
+    if !courses.iter().any(|course| course.0) {
+        return false;
+    }
+    let given = outline_of(&courses, &surface, f64::INFINITY);
+    let all = courses.iter().flat_map(|course| &course.1);
+    let (low, high) = all.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(a, b), q| (a.min(*q), b.max(*q)));
+    let size = (high - low).max_element() / 12.0;
+    let (outline, field) = (outline_of(&courses, &surface, size), UniformSize(size));
+    edges_are_sides(&given);
+    edges_are_sides(&outline);
+    // An edge through a node is taken in parts, and then the loops bound nothing: what follows may be anything. Layouts cut borders
+    // where they touch, so that the mesher has none (`an_edge_through_a_node_is_refused`).
+    let meets = |outline: &Outline| outline.edges().any(|edge| is_met(outline, edge));
+    if meets(&given) || meets(&outline) {
+        return false;
+    }
+    let task = Task {
+        chart_surface: &surface,
+        field: &field,
+        outline: &outline,
+        lattice: [Lattice::Triangles, Lattice::Squares, Lattice::Tree][bytes.len() % 3],
+        settings: CARE,
+        most: 20_000,
+        limit_check: None,
+    };
+    // Too much work is an answer, too.
+    match Budget::new(WORK).within(|| triangulate(&task, &Job::new()).unwrap()) {
+        Ok(Ok(made)) => {
+            made.triangulation.check().unwrap();
+            // A line may be anywhere here, in the mesher only inside.
+            if outline.lines.is_empty() {
+                sound(&made.triangulation, &outline, None).unwrap();
             }
-            Ok(Err(_)) | Err(_) => false,
+            true
         }
-    });
+        Ok(Err(_)) | Err(_) => false,
+    }
+}
+
+#[test]
+fn mutated_outlines_make_sound_triangulations_or_say_why() {
+    let files = corpus(&["data/mutations/outlines"], &["txt"]);
+    mutate("outlines", &files, (0x07A1, 150, 8), triangulated);
+}
+
+/// A node grows on the border itself, of which the triangulation then has a part on each side of it.
+#[test]
+#[ignore = "a node grows on the border of a spike that is far longer than wide"]
+fn a_thin_spike_has_a_sound_triangulation() {
+    triangulated(&std::fs::read(root("data/mutations/open/thin_spike.txt")).unwrap());
 }
