@@ -259,7 +259,7 @@ fn an_edge_through_a_node_is_refused() {
 
 /// Whether an outline was triangulated; panics where the triangulation is not sound.
 fn triangulated(bytes: &[u8]) -> bool {
-    let surface = Waves(if bytes.len() % 2 == 0 { 0.0 } else { 0.3 });
+    let surface = Waves(if bytes.len().is_multiple_of(2) { 0.0 } else { 0.3 });
     let courses = courses_of(bytes);
     if !courses.iter().any(|course| course.0) {
         return false;
