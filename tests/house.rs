@@ -105,7 +105,7 @@ const CEILINGS: &[(&str, usize)] = &[
     ("network", 4_900),
     ("surface", 27_600),
     ("model", 6_750),
-    ("mesh", 25_400),
+    ("mesh", 26_450),
     ("io", 17_200),
     ("draw", 3_000),
     ("lang", 29_500),

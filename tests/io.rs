@@ -15,7 +15,10 @@ use lofting::io::mesh_files::format::Format;
 use lofting::io::mesh_files::{obj_read, stl_read};
 use lofting::io::tables::{json, table, table_read, table_write};
 use lofting::mesh::{FaceRange, Group, Mesh};
+use lofting::session::disk::{Disk, Outputs};
 use proptest::prelude::*;
+
+use crate::support::script;
 
 /// A wavy sheet of `nx` × `ny` cells: the left half of surface `left`, the right of `right[1]`, triangles or quads;
 /// the lower rim as line elements of the curve `rim`; groups of faces, lines and nodes.
@@ -301,6 +304,24 @@ fn our_own_files_read_back() {
         (mesh.nodes.len(), mesh.triangles.len(), 84 + 50 * mesh.triangles.len())
     );
     assert!((area(&again) - area(&mesh)).abs() < 1e-6 * area(&mesh));
+}
+
+/// Parts that share no node have their mid nodes after the corner nodes of all, so that a format without mid nodes holds every element.
+#[test]
+fn parts_of_order_2_are_whole_in_formats_without_mid_nodes() {
+    let script = "units mm\nsurface a = extrude(line((0, 0, 0), (4, 0, 0)), by: (0, 4, 0))\n\
+        surface b = extrude(line((9, 0, 0), (13, 0, 0)), by: (0, 4, 0))\n\
+        mesh m of a, b { size: 1mm  order: 2  conforming: false }\n";
+    let disk = Disk::new(None, Some(Path::new(env!("CARGO_TARGET_TMPDIR"))), &[], Outputs::Counted).unwrap();
+    let outcome = script::outcome("parts.loft", script.as_bytes(), &[], &disk);
+    assert!(outcome.report.ok, "{}", outcome.drawn(false, false));
+    let mesh = &outcome.meshes[0].1;
+    mesh.check().unwrap();
+    assert!(mesh.order == 2 && mesh.corner_count() == 50, "{} corner nodes", mesh.corner_count());
+    let read = obj_read::read(text_of("a.obj", mesh).0.as_bytes()).unwrap();
+    assert_eq!((read.polygons.len(), read.vertices.len()), (mesh.triangles.len() + mesh.quads.len(), 50));
+    assert!((area(&read.mesh("m").0) - 32.0).abs() < 1e-9);
+    assert!(text_of("a.ply", mesh).0.contains("element vertex 50"));
 }
 
 fn data(folder: &str) -> (PathBuf, serde_json::Value) {

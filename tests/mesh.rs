@@ -1,6 +1,6 @@
 //! The surface model and mapped meshes: topology, conformity, limits, and the same bytes on any number of threads.
 
-use std::collections::BTreeMap;
+use std::collections::BTreeSet;
 
 use glam::DVec3;
 use lofting::base::fault::{Fault, Plain};
@@ -20,6 +20,8 @@ use lofting::network::{Chain, Network};
 use lofting::surface::blended::coons::{self, Grid, Method, Settings};
 use lofting::surface::swept::revolve::{axis_of, revolve};
 use lofting::surface::{Reparam, Surface};
+
+use crate::support::invariants;
 
 fn p(x: f64, y: f64, z: f64) -> DVec3 {
     DVec3::new(x, y, z)
@@ -92,40 +94,17 @@ fn cells(mesh: &Mesh) -> Vec<Vec<u32>> {
     mesh.triangles.iter().map(|t| t.to_vec()).chain(mesh.quads.iter().map(|q| q.to_vec())).collect()
 }
 
-/// Free edges and the Euler number; panics where an edge is used twice in one sense or an element has a node twice.
+/// Free edges and the Euler number of a mesh that is sound.
 fn edges_of(mesh: &Mesh) -> (usize, i64) {
-    let mut uses: BTreeMap<(u32, u32), usize> = BTreeMap::new();
-    let mut used = vec![false; mesh.nodes.len()];
-    for cell in cells(mesh) {
-        for (k, &a) in cell.iter().enumerate() {
-            let b = cell[(k + 1) % cell.len()];
-            assert_ne!(a, b, "an element has a node twice: {cell:?}");
-            *uses.entry((a, b)).or_default() += 1;
-            used[a as usize] = true;
-        }
-    }
-    assert!(uses.values().all(|n| *n == 1), "an edge is used twice in one sense");
-    let free = uses.keys().filter(|(a, b)| !uses.contains_key(&(*b, *a))).count();
-    let edges = (uses.len() + free) / 2;
-    let nodes = used.iter().filter(|u| **u).count();
-    (free, nodes as i64 - edges as i64 + cells(mesh).len() as i64)
+    let edges = invariants::edges(mesh);
+    let used: BTreeSet<u32> = edges.keys().flat_map(|(a, b)| [*a, *b]).collect();
+    let free = edges.values().filter(|ways| ways.len() == 1).count();
+    (free, used.len() as i64 - edges.len() as i64 + cells(mesh).len() as i64)
 }
 
 /// Everything that holds for every mesh.
 fn check_mesh(mesh: &Mesh) {
     edges_of(mesh);
-    for (n, a) in mesh.nodes.iter().enumerate() {
-        assert!(a.is_finite(), "node {n}");
-    }
-    let mut seen = vec![false; mesh.nodes.len()];
-    cells(mesh).iter().flatten().chain(mesh.lines.iter().flatten()).chain(&mesh.points).for_each(|n| seen[*n as usize] = true);
-    mesh.triangle_mids
-        .iter()
-        .flatten()
-        .chain(mesh.quad_mids.iter().flatten())
-        .chain(&mesh.line_mids)
-        .for_each(|n| seen[*n as usize] = true);
-    assert!(seen.iter().all(|s| *s), "a node belongs to nothing");
     // No two nodes in one place.
     let mut order: Vec<usize> = (0..mesh.nodes.len()).collect();
     order.sort_by(|a, b| mesh.nodes[*a].x.total_cmp(&mesh.nodes[*b].x));

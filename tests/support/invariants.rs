@@ -25,6 +25,24 @@ fn some<T: Clone>(all: &[T]) -> Vec<T> {
     all.iter().step_by(step).cloned().collect()
 }
 
+/// Edges of the triangles and quads of a mesh that states its conditions, with the way each of them runs: once, or twice in opposite
+/// ways.
+pub fn edges(mesh: &Mesh) -> BTreeMap<(u32, u32), Vec<bool>> {
+    mesh.check().unwrap_or_else(|what| panic!("{}: {what}", mesh.name));
+    let mut edges: BTreeMap<(u32, u32), Vec<bool>> = BTreeMap::new();
+    for corners in mesh.triangles.iter().map(|c| c.as_slice()).chain(mesh.quads.iter().map(|c| c.as_slice())) {
+        for k in 0..corners.len() {
+            let (a, b) = (corners[k], corners[(k + 1) % corners.len()]);
+            edges.entry((a.min(b), a.max(b))).or_default().push(a < b);
+        }
+    }
+    for ((a, _), ways) in &edges {
+        let fine = ways.len() == 1 || ways.len() == 2 && ways[0] != ways[1];
+        assert!(fine, "{}: {ways:?} at {}", mesh.name, mesh.nodes[*a as usize]);
+    }
+    edges
+}
+
 /// A mesh with its elements as triangles, quads by their shorter diagonal, and the face of each.
 struct Seen<'a> {
     mesh: &'a Mesh,
@@ -305,7 +323,7 @@ pub fn look(text: &str, outcome: &Outcome, tally: &mut [usize; 5]) -> Vec<String
             seen.said = seen.said.replace("mm", "e-3m");
         }
         let near: Vec<Nearest> = mesh.geometries.0.iter().map(|c| Nearest::new(&c.surface)).collect();
-        let mut found = Vec::new();
+        let mut found: Vec<String> = mesh.check().err().into_iter().collect();
         let of =
             seen.said.trim_start().strip_prefix("of ").and_then(|rest| rest.split([' ', '\n', ',']).next()).unwrap_or_default().to_owned();
         let shell = outcome.report.shells.iter().find(|s| s.name == of);

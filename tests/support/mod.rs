@@ -4,6 +4,7 @@ pub mod borders;
 pub mod invariants;
 pub mod mutate;
 pub mod networks;
+pub mod outlines;
 pub mod random;
 pub mod reference;
 pub mod script;

@@ -106,9 +106,3 @@ pub fn element_numbers(mesh: &Mesh, group: &Group) -> Vec<u64> {
         })
         .collect()
 }
-
-/// Nodes that are not mid nodes of order 2.
-pub(crate) fn corner_count(mesh: &Mesh) -> usize {
-    let mids = mesh.line_mids.iter().chain(mesh.triangle_mids.as_flattened()).chain(mesh.quad_mids.as_flattened());
-    mids.min().map_or(mesh.nodes.len(), |first| *first as usize)
-}

@@ -8,7 +8,7 @@ use crate::io::files::loss::Loss;
 use crate::io::files::names::Naming;
 use crate::io::mesh_files::deck::{Deck, Encoding};
 use crate::io::mesh_files::element_groups::{Part, parts};
-use crate::io::mesh_files::elements::{KINDS, Kind, corner_count};
+use crate::io::mesh_files::elements::{KINDS, Kind};
 use crate::io::mesh_files::format::Format;
 use crate::io::mesh_files::losses::{left_out, names_lost};
 use crate::io::mesh_files::sets::sets;
@@ -30,7 +30,7 @@ fn write(deck: &Deck, out: &mut dyn Write) -> io::Result<Vec<Loss>> {
     let (sets, mut losses) = sets(mesh, Naming::Free);
     writeln!(out, "# made by loft, lengths in {}\no {}", deck.unit, mesh.name)?;
     // Mid nodes come after all corner nodes, so leaving them out changes no number.
-    let corners = corner_count(mesh);
+    let corners = mesh.corner_count();
     write_records(out, corners, |i, text| {
         text.push(b'v');
         for x in deck.node(i) {

@@ -7,7 +7,6 @@ use crate::io::files::block_writer::{write_fixed, write_records};
 use crate::io::files::loss::Loss;
 use crate::io::mesh_files::binary::{coordinates, integers};
 use crate::io::mesh_files::deck::{Deck, Encoding};
-use crate::io::mesh_files::elements::corner_count;
 use crate::io::mesh_files::format::Format;
 use crate::io::mesh_files::losses::{left_out, names_lost};
 
@@ -25,7 +24,7 @@ pub const FORMAT: Format = Format {
 fn write(deck: &Deck, out: &mut dyn Write) -> io::Result<Vec<Loss>> {
     let mesh = deck.mesh;
     let text = deck.is_text(FORMAT.encoding);
-    let corners = corner_count(mesh);
+    let corners = mesh.corner_count();
     let encoding = if text { "ascii" } else { "binary_little_endian" };
     writeln!(out, "ply\nformat {encoding} 1.0\ncomment made by loft, lengths in {}", deck.unit)?;
     writeln!(out, "element vertex {corners}\nproperty double x\nproperty double y\nproperty double z")?;

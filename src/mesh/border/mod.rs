@@ -5,6 +5,7 @@ pub mod counts;
 pub mod creases;
 pub mod inside;
 pub mod layout;
+pub mod layout_check;
 pub mod lost;
 pub mod nodes;
 pub mod touch;

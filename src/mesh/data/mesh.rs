@@ -80,25 +80,43 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// Adds the nodes and elements of another mesh after this one's; groups are left to the caller.
-    ///
-    /// Only meshes of order 1, or one mesh into an empty one, keep mid nodes after all corner nodes.
-    pub fn append(&mut self, other: Mesh) {
+    /// Nodes that are not mid nodes of order 2.
+    pub fn corner_count(&self) -> usize {
+        let mids = self.line_mids.iter().chain(self.triangle_mids.as_flattened()).chain(self.quad_mids.as_flattened());
+        mids.min().map_or(self.nodes.len(), |first| *first as usize)
+    }
+
+    /// Numbers the mid nodes higher by so many.
+    fn shift_mids(&mut self, by: u32) {
+        let mids = self.line_mids.iter_mut().chain(self.triangle_mids.as_flattened_mut()).chain(self.quad_mids.as_flattened_mut());
+        mids.for_each(|mid| *mid += by);
+    }
+
+    /// Adds the nodes and elements of another mesh after this one's, mid nodes of both after the corner nodes of both; groups are
+    /// left to the caller.
+    pub fn append(&mut self, mut other: Mesh) {
         if self.nodes.is_empty() {
             *self = other;
             return;
         }
         self.border_error = self.border_error.max(other.border_error);
-        let n = self.nodes.len() as u32;
+        let (corners, all) = (self.corner_count(), self.nodes.len() as u32);
+        let own_mids = self.nodes.split_off(corners);
+        let more = other.corner_count();
+        self.shift_mids(more as u32);
+        other.shift_mids(all);
+        self.nodes.extend(other.nodes.drain(..more));
+        self.nodes.extend(own_mids);
+        self.nodes.append(&mut other.nodes);
+        let n = corners as u32;
         let (l, t, q) = (self.lines.len() as u32, self.triangles.len() as u32, self.quads.len() as u32);
-        self.nodes.extend(other.nodes);
         self.points.extend(other.points.iter().map(|p| p + n));
         self.lines.extend(other.lines.iter().map(|e| e.map(|p| p + n)));
         self.triangles.extend(other.triangles.iter().map(|e| e.map(|p| p + n)));
         self.quads.extend(other.quads.iter().map(|e| e.map(|p| p + n)));
-        self.line_mids.extend(other.line_mids.iter().map(|p| p + n));
-        self.triangle_mids.extend(other.triangle_mids.iter().map(|e| e.map(|p| p + n)));
-        self.quad_mids.extend(other.quad_mids.iter().map(|e| e.map(|p| p + n)));
+        self.line_mids.append(&mut other.line_mids);
+        self.triangle_mids.append(&mut other.triangle_mids);
+        self.quad_mids.append(&mut other.quad_mids);
         self.geometries.0.extend(other.geometries.0.into_iter().map(|geometry| geometry.shifted(n)));
         let shift = |r: &Range<u32>, by: u32| r.start + by..r.end + by;
         self.faces.extend(other.faces.into_iter().map(|f| FaceRange {

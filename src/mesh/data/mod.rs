@@ -4,6 +4,7 @@ pub mod face_geometry;
 pub mod face_mesh;
 pub mod hash;
 pub mod mesh;
+pub mod mesh_check;
 pub mod moved;
 pub mod parts;
 pub mod quality;

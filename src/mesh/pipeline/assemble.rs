@@ -40,6 +40,7 @@ const LEANING: u32 = 3;
 /// another, model units.
 pub fn assemble(input: &Input, mut layout: Layout, size: f64, (known, job): (Option<&CacheView>, &Job)) -> Result<Part> {
     inside::place(input, &mut layout);
+    debug_assert_eq!(layout.check(input), Ok(()));
     loop {
         match attempt(input, &mut layout, size, (known, job)) {
             Ok(done) => return Ok(finish(input, layout, done)),

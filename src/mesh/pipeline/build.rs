@@ -138,7 +138,9 @@ impl Outline {
                 remarks.extend(contact_bodies::find(input, &bodies, leaves).into_iter().map(Remark::Touch));
             }
         }
-        Ok(Built { remarks, ..merge(input, parts)? })
+        let built = Built { remarks, ..merge(input, parts)? };
+        debug_assert_eq!(built.mesh.check(), Ok(()));
+        Ok(built)
     }
 }
 
@@ -161,7 +163,7 @@ fn merge(input: &Input, mut parts: Vec<Part>) -> Result<Built> {
             face.name = names.get(surface).cloned().unwrap_or_default();
         }
         let (t, q) = (built.mesh.triangles.len() as u32, built.mesh.quads.len() as u32);
-        offsets.push(built.mesh.nodes.len() as u32);
+        offsets.push(built.mesh.corner_count() as u32);
         ranges.extend(part.ranges.iter().map(|(s, a, b)| (*s, a.start + t..a.end + t, b.start + q..b.end + q)));
         built.explanation.append(&mut part.explanation);
         built.mesh.append(mesh);

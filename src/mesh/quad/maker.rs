@@ -139,10 +139,12 @@ impl Maker<'_> {
         let flat = Alone::flat(&triangulation, self.halves);
         let mate = pair(&triangulation, &normal, &flat, if quads { CELLS } else { MIXED });
         let mut net = Raw { triangulation: &triangulation, mate: &mate, flat: &flat, normal: &normal, halves: self.halves }.net();
+        debug_assert_eq!(net.check().and(net.check_upright()), Ok(()));
         drop(triangulation);
         self.smooth(&mut net, cells, job)?;
         if quads {
             Swapper::new(&mut net).swap();
+            debug_assert_eq!(net.check(), Ok(()));
             self.smooth(&mut net, cells, job)?;
             let Some(whole) = whole_sides(&net) else { return Ok(Err(Trouble::Odd)) };
             self.narrow_rows(&mut net, &whole, cells, job)?;

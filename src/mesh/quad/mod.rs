@@ -3,6 +3,7 @@
 pub mod fit;
 pub mod maker;
 pub mod net;
+pub mod net_check;
 pub mod odd;
 pub mod open;
 pub mod pair;

@@ -220,3 +220,82 @@ impl<'a> Swapper<'a> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::triangulate_points::NO_TRIANGLE;
+    use crate::mesh::quad::net_check::check_pairs;
+    use crate::mesh::quad::net_check::tests::{Random, net_of, random_pairs, sheet};
+    use crate::mesh::quad::pair::{Alone, pair};
+
+    /// What no swap may change: the nodes, the locked sides with their middles, and the area in the chart.
+    fn kept(net: &Net) -> (Vec<(u32, u32, u32)>, f64) {
+        let (mut border, mut area) = (Vec::new(), 0.0);
+        for f in 0..net.face.len() {
+            let c = net.corners(f);
+            let sides = (0..c.len()).filter(|k| net.locked[f] >> k & 1 == 1);
+            border.extend(sides.map(|k| (c[k], c[(k + 1) % c.len()], net.mid[f][k])));
+            area += (0..c.len()).map(|k| net.xy[c[k] as usize].perp_dot(net.xy[c[(k + 1) % c.len()] as usize])).sum::<f64>();
+        }
+        border.sort_unstable();
+        (border, area)
+    }
+
+    fn holds(net: &Net, before: &(Vec<(u32, u32, u32)>, f64)) {
+        net.check().and(net.check_upright()).unwrap();
+        let now = kept(net);
+        assert!(now.0 == before.0 && (now.1 - before.1).abs() <= 1e-9 * before.1, "{} and {}", now.1, before.1);
+    }
+
+    /// Random pairs, then sides swapped one by one in a random order: the net is sound after each.
+    #[test]
+    fn random_pairs_and_swaps_leave_a_sound_net() {
+        let (mut pairs, mut swaps, mut merges) = (0, 0, 0);
+        for case in 0..12 {
+            let mut random = Random(17 + case);
+            let (triangulation, normal, halves) = sheet(9, [0.0, 0.05, 0.15][case as usize % 3], &mut random);
+            triangulation.check().unwrap();
+            let mate = random_pairs(&triangulation, 40 * (1 + case as usize % 4), &mut random);
+            check_pairs(&triangulation, &vec![false; mate.len()], &mate).unwrap();
+            pairs += mate.iter().filter(|m| **m != NO_TRIANGLE).count() / 2;
+            let mut net = net_of(&triangulation, &mate, &normal, &halves);
+            let before = kept(&net);
+            holds(&net, &before);
+            for _ in 0..600 {
+                let f = random.below(net.face.len());
+                let (k, cells) = (random.below(net.corners(f).len()), net.face.len());
+                let mut swapper = Swapper::new(&mut net);
+                let valence: u32 = swapper.valence.iter().sum();
+                if swapper.swap_at(f, k) {
+                    // Where a merge takes two corners away, it says so of their nodes.
+                    let left: u32 = swapper.valence.iter().sum();
+                    let merged = cells - net.face.len();
+                    assert_eq!(left + 2 * merged as u32, valence);
+                    (swaps, merges) = (swaps + 1, merges + merged);
+                    holds(&net, &before);
+                }
+            }
+        }
+        assert!(pairs > 400 && swaps > 600 && merges > 200, "{pairs} pairs, {swaps} swaps, {merges} merges");
+    }
+
+    /// The pairs that are chosen are sound, and so is what is left when nothing gets better by a swap.
+    #[test]
+    fn chosen_pairs_and_all_swaps_leave_a_sound_net() {
+        for case in 0..20 {
+            let mut random = Random(170 + case);
+            let (triangulation, normal, halves) = sheet(9, [0.0, 0.05, 0.15][case as usize % 3], &mut random);
+            let mut flat = vec![false; triangulation.tri.len()];
+            // What is left out stays alone.
+            flat.iter_mut().step_by(23).for_each(|flat| *flat = case % 2 == 1);
+            let mate = pair(&triangulation, &normal, &flat, Alone { least: 0.2, worth: 0.45 });
+            check_pairs(&triangulation, &flat, &mate).unwrap();
+            let mut net = net_of(&triangulation, &mate, &normal, &halves);
+            let before = kept(&net);
+            holds(&net, &before);
+            Swapper::new(&mut net).swap();
+            holds(&net, &before);
+        }
+    }
+}

@@ -1,5 +1,6 @@
 //! Triangles that know their neighbours; they change by flips and by patches made anew.
 
+pub mod check;
 pub mod flip;
 pub mod patch;
 pub mod undo;
@@ -258,37 +259,5 @@ impl Triangulation {
         }
         self.free_tri.clear();
         self.free_node.clear();
-    }
-
-    /// Neighbours know each other, corners turn the right way, every used node knows a triangle of its own.
-    pub fn check(&self) -> Result<(), String> {
-        for t in (0..self.tri.len() as u32).filter(|t| self.alive(*t)) {
-            job::poll();
-            if self.chart_area(t) <= 0.0 {
-                return Err(format!("triangle {t} is turned over"));
-            }
-            for k in 0..3 {
-                let other = self.across[t as usize][k];
-                let c = self.tri[t as usize];
-                if other == NO_TRIANGLE {
-                    continue;
-                }
-                let j = self.side_to(other, t);
-                let d = self.tri[other as usize];
-                if self.across[other as usize][j] != t || d[(j + 1) % 3] != c[(k + 2) % 3] || d[(j + 2) % 3] != c[(k + 1) % 3] {
-                    return Err(format!("triangles {t} and {other} do not know each other"));
-                }
-                if self.locked[t as usize] >> k & 1 != self.locked[other as usize] >> j & 1 {
-                    return Err(format!("triangles {t} and {other} differ about their side"));
-                }
-            }
-            for n in self.tri[t as usize] {
-                let own = self.at[n as usize];
-                if own == NO_TRIANGLE || !self.tri[own as usize].contains(&n) {
-                    return Err(format!("node {n} does not know its triangles"));
-                }
-            }
-        }
-        Ok(())
     }
 }
