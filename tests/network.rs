@@ -7,7 +7,7 @@ use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
 use lofting::geometry::construct::build;
 use lofting::geometry::{Curve, Kind, Motion};
-use lofting::network::detect::detect;
+use lofting::network::flow_detection::detect;
 use lofting::network::{Chain, ChainFlow, Flow, FlowFault, FlowOptions, Input, Network, NodeList, Run, meet, meet_once, of_chains};
 
 #[path = "../benches/shared/nets.rs"]

@@ -4,8 +4,8 @@ use crate::network::grid_fault::GridFault;
 use glam::DVec3;
 
 use super::chain::Chain;
-use super::detect::{Grid, detect_grid, shared};
 use super::flow::{Flow, FlowFault, FlowOptions, NodeList};
+use super::flow_detection::{Grid, detect_grid, shared};
 use super::meet::{closest_points, meet};
 use super::ring_way::same_way;
 use super::snap::may_snap;

@@ -1,7 +1,7 @@
 //! Lays a division into families out as a flow: completeness, orders, directions, borders [Koh & Park 1990, §4.2].
 
-use super::detect::{Division, Grid, Passage, Ring, shared};
 use super::flow::{Flow, FlowFault, FlowKind, FlowOptions, Member, NodeList, Overhang};
+use super::flow_detection::{Division, Grid, Passage, Ring, shared};
 
 /// A division with what it is judged by.
 pub struct Layout<'a> {
@@ -236,7 +236,7 @@ pub fn overhangs(flow: &Flow) -> Vec<Overhang> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::detect::detect;
+    use super::super::flow_detection::detect;
     use super::*;
 
     /// Lists as words of letters, one per node.

@@ -5,9 +5,9 @@ use std::cmp::Ordering;
 use glam::DVec3;
 
 use super::chain::Chain;
-use super::detect::{Grid, detect_grid, shared};
 use super::flow::{Flow, FlowFault, FlowOptions, NodeList};
 use super::flow_chains::{explain, node_lists};
+use super::flow_detection::{Grid, detect_grid, shared};
 use super::meet::closest_points;
 use super::ring_way::same_way;
 use super::snap::may_snap;

@@ -7,7 +7,7 @@
 use glam::DVec3;
 
 use super::chain::Chain;
-use super::detect::{Passage, Ring};
+use super::flow_detection::{Passage, Ring};
 use crate::base::math;
 use crate::base::tolerance::Tolerance;
 

@@ -4,7 +4,7 @@ use crate::lang::diag::span::Span;
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
 use crate::lang::eval::machine::Code;
-use crate::lang::eval::near::{Among, Unknown};
+use crate::lang::eval::misspelt::{Among, Unknown};
 use crate::lang::eval::std;
 use crate::lang::syntax::ast::{Arg, Expr, ExprId, Keyword};
 use crate::lang::syntax::foreign::{PRINTS, range};

@@ -111,7 +111,7 @@ pub struct Machine {
     pub(crate) defaults: std::collections::BTreeMap<(usize, usize), Value>,
     pub(crate) filed: Vec<(Option<(ModuleId, u32)>, Diagnostic)>,
     /// Names that nothing binds, of which it is not yet told what was meant.
-    pub(crate) unknown: crate::lang::eval::near::Unknowns,
+    pub(crate) unknown: crate::lang::eval::misspelt::Unknowns,
     /// What the declaration being evaluated asked for beside values.
     pub(crate) asked: Dependencies,
     /// Shells that something of was asked for, by script and expression.
@@ -140,7 +140,7 @@ impl Default for Machine {
             stages: 0,
             defaults: std::collections::BTreeMap::new(),
             filed: Vec::new(),
-            unknown: crate::lang::eval::near::Unknowns::new(),
+            unknown: crate::lang::eval::misspelt::Unknowns::new(),
             asked: Dependencies::default(),
             glued: std::collections::BTreeMap::new(),
         }
