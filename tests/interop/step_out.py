@@ -35,6 +35,7 @@ ALONG = "a cut that runs along the seam within the tolerance"
 NET = "the other kernel projects edges onto nets within a tolerance of its own"
 KNOWN = {
     "bottle: glass": VOLUME_ONLY,
+    "bracket: glued": GAPS,
     "fender: fender": GAPS,
     "gap_meshes: wave": GAPS,
     "glued: roof": GAPS,
@@ -46,7 +47,7 @@ KNOWN = {
     "walls: pane": VOLUME_ONLY,
 }
 # The same faces go out as IGES.
-KNOWN |= {f"{name} (IGES)": KNOWN[name] for name in ["bottle: glass", "fender: fender", "glued: roof", "walls: bottle", "walls: pane"]}
+KNOWN |= {f"{name} (IGES)": KNOWN[name] for name in ["bottle: glass", "bracket: glued", "fender: fender", "glued: roof", "walls: bottle", "walls: pane"]}
 # Goldens of surfaces that go out: sweeps, skins, walls, corners.
 SURFACES = ["gap_meshes", "joined_turned", "net_reports", "round_corners", "shell_walls", "skin_ends", "sweeps", "walls"]
 
