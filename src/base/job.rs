@@ -1,7 +1,7 @@
 //! How long work is told to stop and tells how far it is.
 //!
 //! Work that a [`Job`] watches ([`Job::watch`]) asks at each row, face or round whether it should go on: by [`Job::go_on`]
-//! where it has the job and may fail, by [`look`] anywhere else. A look at a cancelled job unwinds to the watch around
+//! where it has the job and may fail, by [`poll`] anywhere else. A look at a cancelled job unwinds to the watch around
 //! the work, so that functions without errors can be stopped as well, and no half result gets anywhere.
 //!
 //! A job may also say how much work a run of it may do ([`Job::run`]), in evaluations of curves and surfaces; a run that does more ends
@@ -161,7 +161,7 @@ fn leave() {
     }
 }
 
-/// The items of a long loop whose rounds are short: looks now and then ([`look`]).
+/// The items of a long loop whose rounds are short: looks now and then ([`poll`]).
 pub fn looking<I: IntoIterator>(items: I) -> impl Iterator<Item = I::Item> {
     const ROUNDS: usize = 1024;
     items.into_iter().enumerate().map(|(k, item)| {
@@ -172,7 +172,7 @@ pub fn looking<I: IntoIterator>(items: I) -> impl Iterator<Item = I::Item> {
     })
 }
 
-/// Sorts a long list; looks now and then ([`look`]). What is equal may change places.
+/// Sorts a long list; looks now and then ([`poll`]). What is equal may change places.
 pub fn sort<T: Ord>(items: &mut [T]) {
     const COMPARISONS: u32 = 1 << 14;
     let done = Cell::new(0_u32);

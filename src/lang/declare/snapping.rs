@@ -1,6 +1,6 @@
 //! `snap 4mm`: moves ends of measured curves, and what was made from the curves before is made again.
 //!
-//! A curve may be made from the ends of another one, so curves are snapped in rounds ([`Rounds`]): first those that name no
+//! A curve may be made from the ends of another one, so curves are snapped in rounds (`Rounds`): first those that name no
 //! other curve, then those made from these, which are evaluated anew where something moved, and so on. What other curves
 //! are made from stays where its own round left it. A module is snapped in the round of its `use`.
 //!

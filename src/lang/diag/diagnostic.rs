@@ -25,7 +25,7 @@ pub struct Label {
 /// One report: an error, a warning or a note.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagnostic {
-    /// Code of the table in [`crate::lang::codes`]; its letter is the severity.
+    /// Code of the table in [`crate::lang::diag::codes`]; its letter is the severity.
     pub code: Code,
     /// One sentence without final dot.
     pub message: String,

@@ -1,4 +1,4 @@
-//! What matched to a [`Shape`].
+//! What matched to a `Shape`.
 
 use crate::lang::diag::span::Span;
 use crate::lang::syntax::Rule;

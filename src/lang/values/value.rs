@@ -199,11 +199,11 @@ pub enum BodyKind {
 /// A mesh: of a `mesh` declaration, or data (imported, moved).
 #[derive(Clone, Debug)]
 pub enum MeshValue {
-    /// Declared: the n-th mesh of a script; built on demand by [`super::cx::Cx::mesh`].
+    /// Declared: the n-th mesh of a script; built on demand by [`crate::lang::eval::context::Cx::mesh`].
     Declared {
         /// Script it belongs to.
         module: ModuleId,
-        /// Place in [`super::cx::Cx::meshes`] of that script.
+        /// Place in [`crate::lang::eval::context::Cx::meshes`] of that script.
         index: u32,
     },
     /// Data.
