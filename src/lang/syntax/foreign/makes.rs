@@ -1,4 +1,5 @@
-//! Which keyword declares what a function makes: the parser says so where a call stands alone.
+//! Which keyword declares what a function makes: the parser says so where a call stands alone. Parsing knows nothing of what evaluates, so the
+//! names stand here once more; the test below holds them equal to those of `lang::eval::std`.
 
 /// Functions that make curves.
 const CURVES: &[&str] = &[
