@@ -1,5 +1,6 @@
 //! Meshes and their faces as plain arrays, with their quality.
 
+pub mod edge_uses;
 pub mod face_geometry;
 pub mod face_mesh;
 pub mod hash;

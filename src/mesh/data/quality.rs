@@ -169,35 +169,6 @@ impl Mesh {
     pub fn chord_error(&self, tolerance: &Tolerance) -> Option<f64> {
         self.chord_error_again(tolerance, None)
     }
-
-    /// Every edge of triangles and quads with how often it is used forwards and backwards, sorted by its nodes.
-    fn edge_uses(&self) -> Vec<(u32, u32, u32, u32)> {
-        let mut sides: Vec<(u32, u32, bool)> = Vec::with_capacity(3 * self.triangles.len() + 4 * self.quads.len());
-        let mut add = |a: u32, b: u32| sides.push((a.min(b), a.max(b), a > b));
-        job::looking(&self.triangles).for_each(|t| (0..3).for_each(|k| add(t[k], t[(k + 1) % 3])));
-        job::looking(&self.quads).for_each(|q| (0..4).for_each(|k| add(q[k], q[(k + 1) % 4])));
-        job::sort(&mut sides);
-        let uses = |group: &[(u32, u32, bool)]| {
-            let backwards = group.iter().filter(|s| s.2).count() as u32;
-            (group[0].0, group[0].1, group.len() as u32 - backwards, backwards)
-        };
-        job::looking(sides.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1))).map(uses).collect()
-    }
-
-    /// Whether each edge of the faces is used once in each sense: a closed skin without gaps.
-    pub fn is_watertight(&self) -> bool {
-        let uses = self.edge_uses();
-        !uses.is_empty() && uses.iter().all(|e| (e.2, e.3) == (1, 1))
-    }
-
-    /// Lengths of all edges (of lines, triangles and quads), each once, model units, in the order of their nodes.
-    pub fn edge_lengths(&self) -> Vec<f64> {
-        let mut edges: Vec<(u32, u32)> = self.edge_uses().iter().map(|e| (e.0, e.1)).collect();
-        edges.extend(self.lines.iter().map(|l| (l[0].min(l[1]), l[0].max(l[1]))));
-        job::sort(&mut edges);
-        edges.dedup();
-        job::looking(&edges).map(|(a, b)| self.nodes[*a as usize].distance(self.nodes[*b as usize])).collect()
-    }
 }
 
 /// Whether a quad has a corner of a half turn or more, or no area.
@@ -239,18 +210,5 @@ mod tests {
         close(q.max_aspect, 5.0 / 3.0);
         let q = mesh(&[[0.; 3], [1., 0., 0.], [0.2, 0.2, 0.], [0., 1., 0.]], &[], &[[0, 1, 2, 3]]).quality().unwrap();
         assert!(q.min_quality < 0.0, "{}", q.min_quality);
-    }
-
-    #[test]
-    fn a_tetrahedron_is_watertight_until_a_face_is_turned_or_missing() {
-        let nodes = [[0.; 3], [1., 0., 0.], [0., 1., 0.], [0., 0., 1.]];
-        let faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];
-        assert!(mesh(&nodes, &faces, &[]).is_watertight());
-        assert!(!mesh(&nodes, &faces[1..], &[]).is_watertight());
-        let mut turned = faces;
-        turned[0].swap(1, 2);
-        assert!(!mesh(&nodes, &turned, &[]).is_watertight());
-        assert_eq!(mesh(&nodes, &faces, &[]).edge_lengths().len(), 6);
-        assert!(!mesh(&nodes, &[], &[]).is_watertight());
     }
 }

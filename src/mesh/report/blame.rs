@@ -5,7 +5,7 @@ use std::f64::consts::FRAC_PI_6;
 
 use glam::DVec3;
 
-use crate::base::math::angle_between;
+use crate::base::math::{self, angle_between};
 use crate::base::text::real;
 use crate::base::{job, par};
 use crate::mesh::border::layout::Face;
@@ -21,6 +21,8 @@ use crate::mesh::size::sizing::Sizing;
 
 /// Angles from here on need no word, radians: 15°.
 const SMALL: f64 = 0.2618;
+/// What rounding may take from a squared cosine, with much to spare.
+const COSINE_ROOM: f64 = 1e-9;
 /// A corner of the border this much wider than the least angle is not its cause.
 const ITSELF: f64 = 1.5;
 /// Size that makes the angle over a short side 27°, over that side.
@@ -66,14 +68,17 @@ fn of_face(
     // Each corner first, with the nodes before and after it.
     let halves = quads.iter().flat_map(|[a, b, c, d]| [[*a, *b, *d], [*b, *c, *a], [*c, *d, *b], [*d, *a, *c]]);
     let own = triangles.iter().flat_map(|[a, b, c]| [[*a, *b, *c], [*b, *c, *a], [*c, *a, *b]]);
-    let all = || own.clone().chain(halves.clone()).map(|t| (angle(mesh, t), t));
-    let least = job::looking(all()).min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let squared_cosine = math::cos(SHARP) * math::cos(SHARP) - COSINE_ROOM;
+    // Only few corners are as sharp: the others are left out before their angles are computed.
+    let all = own.chain(halves).filter(|t| has_cosine(mesh, *t, squared_cosine)).map(|t| (angle(mesh, t), t));
+    let all: Vec<(f64, [u32; 3])> = job::looking(all).collect();
+    let least = all.iter().copied().min_by(|a, b| a.0.total_cmp(&b.0))?;
     if least.0 >= SHARP {
         return None;
     }
     let blame = Blame { made, sizing, face, mesh, edges: edges(made, face) };
     let pointed = blame.pointed();
-    let sharp = job::looking(all()).filter(|(angle, t)| *angle < SHARP && !blame.is_near(&pointed, *t)).min_by(|a, b| a.0.total_cmp(&b.0));
+    let sharp = job::looking(all).filter(|(angle, t)| *angle < SHARP && !blame.is_near(&pointed, *t)).min_by(|a, b| a.0.total_cmp(&b.0));
     let sharp = sharp.map(|(angle, t)| {
         let surface = made.input.model.surfaces[face.surface.index()].name.clone();
         Remark::Sharp { angle, at: mesh.nodes[t[0] as usize], surface, faces: 1, cure: blame.cure(foreseen, t) }
@@ -92,6 +97,14 @@ fn of_face(
 fn angle(mesh: &Mesh, c: [u32; 3]) -> f64 {
     let [a, b, d] = c.map(|n| mesh.nodes[n as usize]);
     if a == b || a == d { 0.0 } else { angle_between(b - a, d - a) }
+}
+
+/// Whether a corner is sharp enough for its cosine to be positive with at least this square.
+fn has_cosine(mesh: &Mesh, c: [u32; 3], square: f64) -> bool {
+    let [p, q, r] = c.map(|n| mesh.nodes[n as usize]);
+    let (a, b) = (q - p, r - p);
+    let (along, lengths) = (a.dot(b), a.length_squared() * b.length_squared());
+    lengths == 0.0 || along > 0.0 && along * along >= square * lengths
 }
 
 /// A number with three digits that count.
