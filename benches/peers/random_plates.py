@@ -1,0 +1,107 @@
+"""usage: random_plates.py LOFT [--cases N] [--first SEED] [--quads] [--gmsh] [--triangles COUNT]
+
+Meshes random plates (plates.py) at two sizes each, of about COUNT (20 000) and a quarter of as many elements, and prints one line a mesh and a
+table of least, 10 %, median and largest value of every figure; with --gmsh the same plates by Gmsh's Frontal-Delaunay (with --quads by its
+algorithm 8 with recombination 3), in turn. Times: ours is the mesh stage of one thread, Gmsh's the CPU of its 2-D mesher alone.
+Needs `pip install gmsh numpy`."""
+import argparse
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+from plates import Plate
+from quality import Cpu, gmsh_mesh, quads, triangles
+
+
+def read_obj(path):
+    """Points, triangles and quads of an OBJ file of one mesh."""
+    points, elements = [], {3: [], 4: []}
+    for line in open(path):
+        if line.startswith("v "):
+            points.append([float(x) for x in line.split()[1:4]])
+        elif line.startswith("f "):
+            corners = [int(word.split("/")[0]) - 1 for word in line.split()[1:]]
+            elements[len(corners)].append(corners)
+    return np.array(points), np.array(elements[3], int).reshape(-1, 3), np.array(elements[4], int).reshape(-1, 4)
+
+
+def measure(points, three, four):
+    found = triangles(points, three) if len(three) else {}
+    return found | (quads(points, four) if len(four) else {})
+
+
+def ours(program, plate, settings, folder):
+    script = pathlib.Path(folder) / "plate.loft"
+    script.write_text(plate.loft(settings))
+    run = subprocess.run([program, "run", script, "-o", folder, "--threads", "1", "--timings"], capture_output=True, text=True)
+    if run.returncode != 0:
+        return {"failed": run.stderr.strip().splitlines()[:1]}
+    timing = next(line for line in run.stderr.splitlines() if line.startswith("parse "))
+    seconds = float(timing.split("mesh ")[1].split(" s")[0])
+    return measure(*read_obj(pathlib.Path(folder) / "fine.obj")) | {"seconds": seconds}
+
+
+def theirs(plate, size, with_quads):
+    import gmsh
+
+    gmsh.initialize()
+    options = {"General.Terminal": 0, "General.NumThreads": 1, "Mesh.MeshSizeMin": size, "Mesh.MeshSizeMax": size}
+    options |= {f"Mesh.MeshSize{k}": 0 for k in ("FromPoints", "FromCurvature", "ExtendFromBoundary")}
+    options |= {"Mesh.Algorithm": 8, "Mesh.RecombineAll": 1, "Mesh.RecombinationAlgorithm": 3} if with_quads else {"Mesh.Algorithm": 6}
+    for key, value in options.items():
+        gmsh.option.setNumber(key, value)
+    plate.gmsh(gmsh)
+    gmsh.model.mesh.generate(1)
+    with Cpu() as cpu:
+        gmsh.model.mesh.generate(2)
+    found = measure(*gmsh_mesh(gmsh)) | {"seconds": round(cpu.seconds, 3)}
+    gmsh.finalize()
+    return found
+
+
+def table(title, rows):
+    print(f"\n{title}: {len(rows)} meshes")
+    print(f"{'':>16} {'least':>9} {'10 %':>9} {'median':>9} {'largest':>9}")
+    for key in [k for k in rows[0] if k not in ("case", "size")] if rows else []:
+        values = np.array([row[key] for row in rows if key in row])
+        of = [values.min(), np.percentile(values, 10), np.median(values), values.max()]
+        print(f"{key:>16} " + " ".join(f"{v:9.4g}" for v in of))
+
+
+def main():
+    ask = argparse.ArgumentParser()
+    ask.add_argument("loft")
+    ask.add_argument("--cases", type=int, default=50)
+    ask.add_argument("--first", type=int, default=0)
+    ask.add_argument("--triangles", type=int, default=20_000)
+    ask.add_argument("--quads", action="store_true")
+    ask.add_argument("--gmsh", action="store_true")
+    given = ask.parse_args()
+    own, other, failed = [], [], []
+    with tempfile.TemporaryDirectory() as folder:
+        for seed in range(given.first, given.first + given.cases):
+            plate = Plate(seed)
+            for share in (1, 4):
+                count = given.triangles / share
+                # 0.8 of a rectangle of the plate's size is plate; an equilateral triangle has 0.433 of its side squared.
+                size = round((0.8 * 36_000 / count / (1 if given.quads else 0.433)) ** 0.5, 3)
+                settings = f"size: {size}mm" + ("  elements: quads" if given.quads else "")
+                found = {"case": f"{seed} {plate.kind} {len(plate.holes)} holes, web {plate.web}", "size": size}
+                found |= ours(given.loft, plate, settings, folder)
+                print(json.dumps(found), flush=True)
+                (failed if "failed" in found else own).append(found)
+                if given.gmsh:
+                    other.append(theirs(plate, size, given.quads))
+    table("loft", own)
+    if other:
+        table("Gmsh", other)
+        ratio = [{"times": b["seconds"] / max(a["seconds"], 1e-3)} for a, b in zip(own, other)] if not failed else []
+        table("Gmsh's time over ours", ratio)
+    print(f"\nfailed: {len(failed)}")
+    return 1 if failed else 0
+
+
+sys.exit(main())
