@@ -89,7 +89,7 @@ pub(crate) fn on(nearest: &Nearest, patch: &Patch, p: DVec3, tolerance: &Toleran
     if found.distance > tolerance.point || surface.domain() == Domain::Loop {
         return found.distance <= tolerance.point;
     }
-    foot_within((surface, None), p, found.uv, patch.u, patch.v).0 <= tolerance.point
+    foot_within(surface.evaluator(), p, found.uv, patch.u, patch.v).0 <= tolerance.point
 }
 
 /// (u, v) of points in a row on a patch, near enough to each other that the foot of one leads to the next; beyond 0…1 where
@@ -103,13 +103,13 @@ pub fn trace(surface: &Surface, patch: &Patch, points: &[DVec3]) -> Vec<(f64, f6
     let (u, v) = if trimmed { (turns(surface.closed().0), turns(surface.closed().1)) } else { (patch.u, patch.v) };
     let middle = points.len() / 2;
     let first = Nearest::new(surface).at(points[middle]).uv;
-    let first = if trimmed { unwrapped(surface, first) } else { foot_within((surface, None), points[middle], first, u, v).1 };
+    let first = if trimmed { unwrapped(surface, first) } else { foot_within(surface.evaluator(), points[middle], first, u, v).1 };
     let mut places = vec![first; points.len()];
     for k in (0..middle).rev() {
-        places[k] = foot_within((surface, None), points[k], places[k + 1], u, v).1;
+        places[k] = foot_within(surface.evaluator(), points[k], places[k + 1], u, v).1;
     }
     for k in middle + 1..points.len() {
-        places[k] = foot_within((surface, None), points[k], places[k - 1], u, v).1;
+        places[k] = foot_within(surface.evaluator(), points[k], places[k - 1], u, v).1;
     }
     places
 }

@@ -257,7 +257,7 @@ impl Field<'_> {
     /// middle of the places (beyond a fold): then the point there, for any point of the surface tells a distance at most.
     fn between(&self, (a, at): (&Corner, DVec2), (b, bt): (&Corner, DVec2), uv: &[DVec2; 3]) -> (f64, Corner) {
         let (p, guess) = (0.5 * (a.p + b.p), 0.5 * (at + bt));
-        let (off, at) = foot_within((self.surface, None), p, (guess.x, guess.y), self.u, self.v);
+        let (off, at) = foot_within(self.surface.evaluator(), p, (guess.x, guess.y), self.u, self.v);
         let width = uv[0].max(uv[1]).max(uv[2]) - uv[0].min(uv[1]).min(uv[2]);
         let at = DVec2::from(at);
         let there = self.surface.point(guess.x, guess.y);

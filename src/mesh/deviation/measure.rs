@@ -14,7 +14,7 @@ use crate::mesh::deviation::poles::from_pole;
 use crate::mesh::deviation::triangle::stationary;
 use crate::mesh::mapped::grid::{Grid, triangle_rows};
 use crate::surface::core::power_form::PowerForm;
-use crate::surface::{Domain, Surface, foot_within, step};
+use crate::surface::{Domain, Evaluator, Surface, foot_within, step};
 
 /// Divisions of a triangle's side.
 const SIX: usize = 6;
@@ -285,7 +285,7 @@ fn follow((surface, quick): (&Surface, Option<&PowerForm>), mut farthest: Vec<Se
         if seen.seems < most || followed == FOLLOWED {
             break;
         }
-        let distance = foot_within((surface, quick), seen.p, seen.uv, u, v).0;
+        let distance = foot_within(Evaluator::new(surface, quick), seen.p, seen.uv, u, v).0;
         // What only seems far, as beside a pole, is passed by.
         followed += usize::from(distance >= MIN_TRUE_SHARE * seen.seems);
         most = f64::max(most, distance);

@@ -48,7 +48,7 @@ pub fn distance(surface: &Surface, p: DVec3, place: (f64, f64), slight: f64) -> 
     }
     let over = |closed: bool| if closed { (f64::NEG_INFINITY, f64::INFINITY) } else { (0.0, 1.0) };
     let (u, v) = if surface.domain() == Domain::Loop { surface.closed() } else { (false, false) };
-    foot_within((surface, None), p, place, over(u), over(v)).0
+    foot_within(surface.evaluator(), p, place, over(u), over(v)).0
 }
 
 /// A segment as one side of a face has it.
