@@ -19,7 +19,7 @@ fn fractions(input: &Input, layout: &Layout, chain: &Chain, segment: usize) -> [
     })
 }
 
-/// Stretches whose ends lie in the box of a chain.
+/// Segments whose ends lie in the box of a chain.
 fn nearby<'a>(input: &'a Input, layout: &'a Layout, chain: &Chain) -> impl Iterator<Item = usize> + 'a {
     let around = chain.bbox();
     let at = |junction: usize| Box3::of([layout.pieces.junctions[junction]]);
@@ -30,7 +30,7 @@ fn nearby<'a>(input: &'a Input, layout: &'a Layout, chain: &Chain) -> impl Itera
     (0..layout.pieces.segments.len()).filter(near)
 }
 
-/// Stretches that lie on a chain, in its direction, with arc lengths on it.
+/// Segments that lie on a chain, in its direction, with arc lengths on it.
 pub fn lying_on(input: &Input, layout: &Layout, chain: &Chain) -> Vec<SegmentUse> {
     let length = chain.length();
     let place = |segment: usize| {

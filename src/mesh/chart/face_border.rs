@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 
 use crate::base::tolerance::NUDGE;
-use crate::mesh::border::layout::{Face, side_parameters};
+use crate::mesh::border::layout::Face;
 use crate::mesh::border::nodes::line as line_of;
+use crate::mesh::border::side_parameters::side_parameters;
 use crate::mesh::chart::affine::Chart;
 use crate::mesh::chart::embedded;
 use crate::mesh::chart::face_input::FaceInput;

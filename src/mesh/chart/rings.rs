@@ -29,7 +29,7 @@ pub(crate) fn way_round(surface: &Surface, from: (f64, f64), to: (f64, f64)) -> 
 }
 
 /// Adds rings where the face has one seam.
-pub(crate) fn add_rings(made: &FaceInput, face: &Face, border: &FaceBorder, (chart, outline): (&Chart, &mut Outline)) {
+pub(crate) fn add_rings(made: &FaceInput, face: &Face, border: &FaceBorder, chart: &Chart, outline: &mut Outline) {
     let mut places: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
     border.ids.iter().zip(0..).for_each(|(id, n)| places.entry(*id).or_default().push(n));
     // What turns back along itself has no way round.

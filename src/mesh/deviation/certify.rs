@@ -61,7 +61,7 @@ impl Proof {
 
 /// Whether all elements of a mapped face (a quad as its two triangles) keep a distance from its surface, model units;
 /// `triangles` are those of the face.
-pub fn of_face((surface, limit): (&Surface, f64), geometry: &FaceGeometry, triangles: &[[u32; 3]], nodes: &[DVec3]) -> Proof {
+pub fn of_face(surface: &Surface, limit: f64, geometry: &FaceGeometry, triangles: &[[u32; 3]], nodes: &[DVec3]) -> Proof {
     match &geometry.nodes {
         FaceNodes::Grid(grid, frame) => {
             let field = Field { surface, u: grid.u, v: grid.v, slanted: false, limit };

@@ -303,6 +303,6 @@ fn angle_or_zero(a: DVec3, b: DVec3) -> f64 {
 }
 
 /// The wanted number of steps for a size, of a length that may be longer by `near`.
-pub fn wanted_steps((length, near): (f64, f64), size: f64, bias: f64, cap: u32) -> u32 {
+pub fn wanted_steps(length: f64, near: f64, size: f64, bias: f64, cap: u32) -> u32 {
     for_size((length - near).max(0.0), size, bias).min(f64::from(cap)) as u32
 }

@@ -1,4 +1,4 @@
-//! Checks finished faces against size, chord error and angle, and says what is missing in which direction.
+//! Checks finished faces against size, chord error and angle, and by which factor counts are too small in each direction.
 
 use glam::DVec3;
 
@@ -23,7 +23,7 @@ use crate::surface::{OneSided, Surface};
 /// Room for the measured chord error: what its search may leave unseen.
 const SEEN: f64 = 1.001;
 
-/// What a face asks for, as factors on its counts along u and along v (a triangle: the first for all).
+/// What a face demands, as factors on its counts along u and along v (a triangle: the first for all).
 #[derive(Clone, Debug)]
 pub struct Verdict {
     /// For the size; a written count may overrule it.
@@ -37,7 +37,7 @@ pub struct Verdict {
 }
 
 impl Verdict {
-    /// Nothing is asked.
+    /// Nothing is missing.
     pub const FINE: Self = Self { size: [1.0; 2], limit: [1.0; 2], broken: MeshLimit::Size, reached: 0.0 };
 
     /// No limit is broken.
@@ -85,21 +85,22 @@ pub fn check(input: &Input, limits: &Limits, mesh: &Mesh, faces: &[Finished], re
 fn verdict_on(input: &Input, limits: &Limits, mesh: &Mesh, finished: &Finished) -> Verdict {
     let surface = &input.model.surfaces[finished.face.surface.index()].surface;
     let mut verdict = Verdict::FINE;
-    sizes(finished, (mesh, input.tolerance.point), &mut verdict);
+    sizes(finished, mesh, input.tolerance.point, &mut verdict);
     if let Some(limit) = limits.chord {
-        chords(input, (surface, limit), mesh, finished, &mut verdict);
+        chords(input, limit, mesh, finished, &mut verdict);
     }
     if let Some(limit) = limits.angle {
-        turns(surface, finished, (limits, limit), &mut verdict);
+        turns(surface, finished, limits, limit, &mut verdict);
     }
     verdict
 }
 
 /// The chord error: proved by bounds. Where there is no proof it is measured, and where no place breaks the limit the bound is
 /// what has to fall.
-fn chords(input: &Input, (surface, limit): (&Surface, f64), mesh: &Mesh, finished: &Finished, verdict: &mut Verdict) {
+fn chords(input: &Input, limit: f64, mesh: &Mesh, finished: &Finished, verdict: &mut Verdict) {
+    let surface = &input.model.surfaces[finished.face.surface.index()].surface;
     let (geometry, triangles) = (&finished.ready.geometry, &mesh.triangles[finished.triangles.clone()]);
-    let proof = certify::of_face((surface, limit), geometry, triangles, &mesh.nodes);
+    let proof = certify::of_face(surface, limit, geometry, triangles, &mesh.nodes);
     if proof == Proof::Kept {
         return;
     }
@@ -125,7 +126,7 @@ fn directions(finished: &Finished) -> [bool; 2] {
 }
 
 /// Edges along u and v against the size with its room; diagonals are left aside.
-fn sizes(finished: &Finished, (mesh, near): (&Mesh, f64), verdict: &mut Verdict) {
+fn sizes(finished: &Finished, mesh: &Mesh, near: f64, verdict: &mut Verdict) {
     let most = finished.face.size.0 * SIZE_ROOM + near;
     let node = |id: u32| mesh.nodes[id as usize];
     match &finished.ready.geometry.nodes {
@@ -186,7 +187,7 @@ fn sizes(finished: &Finished, (mesh, near): (&Mesh, f64), verdict: &mut Verdict)
 }
 
 /// Turns of the normal over each cell: between its corners, and between places inside where cells are large.
-fn turns(surface: &Surface, finished: &Finished, (limits, limit): (&Limits, f64), verdict: &mut Verdict) {
+fn turns(surface: &Surface, finished: &Finished, limits: &Limits, limit: f64, verdict: &mut Verdict) {
     let worst = match &finished.ready.geometry.nodes {
         FaceNodes::Grid(grid, _) => turns_of_grid(surface, grid),
         nodes => [0.0, 0.0, turn_of_cells(surface, nodes)],
@@ -208,15 +209,15 @@ fn turns(surface: &Surface, finished: &Finished, (limits, limit): (&Limits, f64)
     }
 }
 
-/// Places along each direction of a face at which its normal is looked at, at least.
-const MAX_SAMPLES: usize = 64;
+/// Places along each direction of a face at which its normal is sampled, at least.
+const MIN_SAMPLES: usize = 64;
 /// Places along a side of a cell at most.
-const MOST_LOOKS: usize = 16;
+const MAX_CELL_SAMPLES: usize = 16;
 
 /// The largest turns over cells of a grid: along u, along v, and in all.
 fn turns_of_grid(surface: &Surface, grid: &Grid) -> [f64; 3] {
     let (nu, nv) = grid.size();
-    let parts = |n: usize| MAX_SAMPLES.div_ceil(n).min(MOST_LOOKS);
+    let parts = |n: usize| MIN_SAMPLES.div_ceil(n).min(MAX_CELL_SAMPLES);
     let (ku, kv) = (parts(nu), parts(nv));
     let lean = |last: bool| if last { OneSided::Before } else { OneSided::After };
     let line = |j: usize, y: usize| -> Vec<DVec3> {
@@ -255,7 +256,7 @@ fn inside(grid: &Grid, (i, j): (usize, usize), (x, y): (f64, f64)) -> (f64, f64)
 fn turn_of_cells(surface: &Surface, nodes: &FaceNodes) -> f64 {
     let uv = nodes.listed_uv();
     let normals: Vec<DVec3> = uv.iter().map(|(u, v)| surface.normal(*u, *v)).collect();
-    let few = uv.len() < MAX_SAMPLES * MAX_SAMPLES;
+    let few = uv.len() < MIN_SAMPLES * MIN_SAMPLES;
     let mut worst = 0.0_f64;
     nodes.each_listed_cell(|corners| {
         let mut own: Vec<DVec3> = corners.iter().map(|c| normals[*c]).collect();

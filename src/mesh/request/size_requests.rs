@@ -75,7 +75,7 @@ const RECTANGLES: usize = 20_000;
 
 /// The least length that sources ask for on a patch, within `NEARLY` of itself, where that is below `most`: rectangles
 /// are halved where their box leaves room for less.
-pub fn least_on(surface: &Surface, (u, v): ((f64, f64), (f64, f64)), sources: &Sources, most: f64) -> Option<Least> {
+pub fn least_on(surface: &Surface, u: (f64, f64), v: (f64, f64), sources: &Sources, most: f64) -> Option<Least> {
     if sources.is_empty() || sources.least() >= most {
         return None;
     }

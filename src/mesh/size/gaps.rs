@@ -15,11 +15,11 @@ use crate::mesh::request::limits::Limits;
 use crate::model::segments::SegmentUse;
 use crate::surface::{Domain, Surface, foot_within};
 
-/// Places along a segment at which gaps and bends are asked for, less one.
+/// Places along a segment at which gaps and bends are sampled, less one.
 pub const PLACES: usize = 64;
 /// Least share of a chord error that a gap has to leave to the bend: a tenth of the step that would do without a gap.
 const LEFT: f64 = 0.01;
-/// Share of a distance that matters up to which another one is taken for what it seems at first.
+/// Share of the tolerance up to which a distance is not refined.
 pub const SLIGHT: f64 = 0.001;
 
 /// A segment beside a face, from its start to its end.
@@ -34,13 +34,13 @@ pub struct Beside {
 
 impl Beside {
     /// Of points of a segment with their places on the surface.
-    pub fn new(surface: &Surface, (places, points): (Vec<(f64, f64)>, Vec<DVec3>), slight: f64) -> Self {
+    pub fn new(surface: &Surface, places: Vec<(f64, f64)>, points: Vec<DVec3>, slight: f64) -> Self {
         let off = places.iter().zip(&points).map(|(uv, p)| distance(surface, *p, *uv, slight)).collect();
         Self { places, points, off }
     }
 }
 
-/// How far a point is from a surface near a place; no more than `slight` is not looked at closely.
+/// How far a point is from a surface near a place; one up to `slight` is not refined.
 pub fn distance(surface: &Surface, p: DVec3, place: (f64, f64), slight: f64) -> f64 {
     let first = p.distance(surface.point(place.0, place.1));
     if first <= slight {
@@ -52,7 +52,7 @@ pub fn distance(surface: &Surface, p: DVec3, place: (f64, f64), slight: f64) -> 
 }
 
 /// A segment as one side of a face has it.
-fn beside(input: &Input, layout: &Layout, own: &Face, (side, u): (usize, &SegmentUse)) -> Beside {
+fn beside(input: &Input, layout: &Layout, own: &Face, side: usize, u: &SegmentUse) -> Beside {
     let surface = &input.model.surfaces[own.surface.index()].surface;
     let share = |i: usize| i as f64 / PLACES as f64;
     let points: Vec<DVec3> = (0..=PLACES).map(|i| layout.point(u.segment, share(i))).collect();
@@ -65,7 +65,7 @@ fn beside(input: &Input, layout: &Layout, own: &Face, (side, u): (usize, &Segmen
         }
         places
     });
-    Beside::new(surface, (places, points), input.tolerance.point * SLIGHT)
+    Beside::new(surface, places, points, input.tolerance.point * SLIGHT)
 }
 
 /// What is left of a chord error for the bend where an edge is so far off; never nothing.
@@ -73,7 +73,7 @@ pub fn left(limit: f64, off: f64) -> f64 {
     (limit - off).max(limit * LEFT)
 }
 
-/// What runs beside each face, side by side, where limits are asked about it: free faces with bends, and those whose borders
+/// What runs beside each face, side by side, where limits depend on it: free faces with bends, and those whose borders
 /// do not come from themselves.
 pub fn rows(input: &Input, layout: &Layout, limits: &Limits) -> Vec<Vec<Beside>> {
     par::map(layout.faces.len(), |f| {
@@ -81,10 +81,10 @@ pub fn rows(input: &Input, layout: &Layout, limits: &Limits) -> Vec<Vec<Beside>>
         let surface = &input.model.surfaces[own.surface.index()].surface;
         let bends = own.free && !surface.is_flat() && (limits.chord.is_some() || limits.angle.is_some());
         let asked = bends || limits.chord.is_some() && is_off(input, own, surface);
-        // Made ready once for all sides.
-        let _ready = if asked { surface.power_form() } else { None };
+        // Converted once for all sides.
+        let _power_form = if asked { surface.power_form() } else { None };
         let sides = own.sides.iter().enumerate().filter(|_| asked);
-        sides.flat_map(|(k, side)| side.uses.iter().map(move |u| beside(input, layout, own, (k, u)))).collect()
+        sides.flat_map(|(k, side)| side.uses.iter().map(move |u| beside(input, layout, own, k, u))).collect()
     })
 }
 

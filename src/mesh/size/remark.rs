@@ -9,7 +9,7 @@ use crate::mesh::border::lost::Lost;
 use crate::mesh::border::touch::{Kind, Touch};
 use crate::mesh::request::fault::{Cure, MeshFault};
 use crate::mesh::request::input::Input;
-use crate::mesh::size::sizing::{FREE_ONLY, KEYS, free_only_origin};
+use crate::mesh::size::rule_effects::{FREE_ONLY, KEYS, free_only_origin};
 use crate::model::fault::Touching;
 
 /// What is to be said about a mesh and the rules of its plan, by their places in it.

@@ -10,7 +10,7 @@ use crate::mesh::size::sizing::Sizing;
 const SHARE: f64 = 0.125;
 
 /// Faces of triangles, mapped because nothing says otherwise, that are better made freely. What is written stays.
-pub fn find(layout: &Layout, (nodes, near): (&Nodes, f64), sizing: &Sizing) -> Vec<(usize, Uneven)> {
+pub fn find(layout: &Layout, nodes: &Nodes, near: f64, sizing: &Sizing) -> Vec<(usize, Uneven)> {
     let mut required_on_mapped: Vec<Option<f64>> = vec![None; layout.pieces.segments.len()];
     for (k, spacing) in sizing.required_on_mapped.iter().enumerate() {
         let least = spacing.as_ref().map_or(f64::INFINITY, |spacing| spacing.least());
@@ -21,7 +21,7 @@ pub fn find(layout: &Layout, (nodes, near): (&Nodes, f64), sizing: &Sizing) -> V
             return None;
         }
         let beside = face.segments().filter_map(|k| required_on_mapped[k]).reduce(f64::min);
-        row(face, (nodes, near)).map(Uneven::Row).or(beside.map(Uneven::Beside))
+        row(face, nodes, near).map(Uneven::Row).or(beside.map(Uneven::Beside))
     };
     layout.faces.iter().enumerate().filter_map(|(f, face)| Some((f, of(face)?))).collect()
 }
@@ -33,7 +33,7 @@ fn counted(face: &Face, sizing: &Sizing) -> bool {
 }
 
 /// The shortest step of a side next to much longer ones.
-fn row(face: &Face, (nodes, near): (&Nodes, f64)) -> Option<f64> {
+fn row(face: &Face, nodes: &Nodes, near: f64) -> Option<f64> {
     let n = face.sides.len();
     let steps = |side: &FaceSide| -> Vec<f64> { side.uses.iter().map(|u| (u.s.1 - u.s.0) / f64::from(nodes.count(u.segment))).collect() };
     let all: Vec<Vec<f64>> = face.sides.iter().map(steps).collect();
