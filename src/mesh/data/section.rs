@@ -160,7 +160,7 @@ mod tests {
     }
 
     fn cut(mesh: &Mesh, at: DVec3, normal: DVec3) -> Vec<Row> {
-        section(mesh, (at, normal.normalize()), 1e-12, 1e-9)
+        section(mesh, at, normal.normalize(), 1e-12, 1e-9)
     }
 
     #[test]
