@@ -1,4 +1,4 @@
-//! What is asked of a mesh: settings and rules, resolved to entities by the language.
+//! What is requested of a mesh: settings and rules, resolved to entities by the language.
 
 use std::collections::BTreeMap;
 
@@ -68,7 +68,7 @@ pub enum Place {
     Box(Box3),
 }
 
-/// `near … { size radius }` or `in … { size }`: smaller elements at some places.
+/// `near … { size radius }` or `in … { size }`: smaller elements at some places; [`SizeRequests`](super::size_requests::SizeRequests) acts on it.
 #[derive(Clone, Debug)]
 pub struct Refine {
     /// Where.
@@ -92,7 +92,7 @@ pub struct GroupRequest {
     pub origin: Origin,
 }
 
-/// All that is asked of one mesh.
+/// All that is requested of one mesh.
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// Name as declared.
@@ -107,7 +107,7 @@ pub struct Plan {
     pub points: Vec<DVec3>,
     /// What is written of the whole mesh.
     pub settings: MeshSettings,
-    /// What joins faces that touch without a shared border, with the expression that asks for it.
+    /// What joins faces that touch without a shared border, with the expression that says so.
     pub imprint: Option<(Imprint, Origin)>,
     /// How far apart borders of a surface and of its neighbours may be and still be one edge, model units; the tolerance for
     /// surfaces that are not listed.
@@ -140,7 +140,7 @@ impl Plan {
         written(MeshLimit::ChordError).or_else(|| written(MeshLimit::AngleError))
     }
 
-    /// What asks for the size: its expression, or the mesh where none is written.
+    /// Where the size is from: its expression, or the mesh where none is written.
     pub fn size_origin(&self) -> Origin {
         self.settings.size.map_or(self.origin, |size| size.1)
     }

@@ -10,7 +10,7 @@ use crate::mesh::size::border_spacing::SPACING;
 use crate::mesh::size::rule_effects::RuleEffects;
 
 /// Gives faces their size, elements and method: those of the last rule on the face, else on its surface, else of the mesh.
-pub(super) fn apply_rules(input: &Input, layout: &mut Layout, size: f64, effects: &mut RuleEffects) {
+pub fn apply_rules(input: &Input, layout: &mut Layout, size: f64, effects: &mut RuleEffects) {
     for face in &mut layout.faces {
         face.size = (size, None);
         let mut last: [Option<usize>; 3] = [None; 3];

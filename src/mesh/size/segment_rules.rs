@@ -12,7 +12,7 @@ use crate::mesh::size::rule_lines::{RuleLine, lines_of_edge};
 
 /// How a rule divides a segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Division {
+enum RuleDivision {
     Count(u32),
     Size(f64),
 }
@@ -45,7 +45,7 @@ fn settle<T>(slot: &mut Option<Ruled<T>>, new: Ruled<T>, key: &'static str, effe
 }
 
 /// The settings of a segment by rules.
-pub(super) struct SegmentSettings {
+pub struct SegmentSettings {
     /// A written count and its rule.
     pub count: Option<(u32, usize)>,
     /// Target size, model units, and the rule or clause unless it is the mesh's own.
@@ -57,8 +57,8 @@ pub(super) struct SegmentSettings {
 }
 
 /// What rules say of the segments of a layout.
-pub(super) struct SegmentRules {
-    division: Vec<Option<Ruled<Division>>>,
+pub struct SegmentRules {
+    division: Vec<Option<Ruled<RuleDivision>>>,
     bias: Vec<Option<Ruled<f64>>>,
 }
 
@@ -99,8 +99,8 @@ impl SegmentRules {
     /// The settings of a segment, with the size that its faces give it where no rule says one.
     pub fn of_segment(&self, k: usize, of_faces: (f64, Option<usize>)) -> SegmentSettings {
         let (count, size) = match self.division[k] {
-            Some(Ruled { value: Division::Count(count), rule, .. }) => (Some((count, rule)), of_faces),
-            Some(Ruled { value: Division::Size(size), rule, .. }) => (None, (size, Some(rule))),
+            Some(Ruled { value: RuleDivision::Count(count), rule, .. }) => (Some((count, rule)), of_faces),
+            Some(Ruled { value: RuleDivision::Size(size), rule, .. }) => (None, (size, Some(rule))),
             None => (None, of_faces),
         };
         SegmentSettings { count, size, bias: self.bias[k].map_or(1.0, |b| b.value), bias_rule: self.bias[k].map(|b| b.rule) }
@@ -112,11 +112,11 @@ impl SegmentRules {
         if let Some((count, origin)) = rule.settings.count {
             let shares = line.count_shares(count, near).map_err(|links| MeshFault::CountBelowLinks { count: (count, origin), links })?;
             for (u, n) in line.uses.iter().zip(shares) {
-                settle(&mut self.division[u.segment], Ruled { rank, rule: index, value: Division::Count(n) }, "count", effects);
+                settle(&mut self.division[u.segment], Ruled { rank, rule: index, value: RuleDivision::Count(n) }, "count", effects);
             }
         } else if let Some((size, _)) = rule.settings.size {
             for u in &line.uses {
-                settle(&mut self.division[u.segment], Ruled { rank, rule: index, value: Division::Size(size) }, "size", effects);
+                settle(&mut self.division[u.segment], Ruled { rank, rule: index, value: RuleDivision::Size(size) }, "size", effects);
             }
         }
         if let Some((b, _)) = rule.settings.bias {
@@ -156,7 +156,7 @@ impl SegmentRules {
                 .ok_or(MeshFault::CountBelowLinks { count: (count, origin), links: segments.len() as u32 })?;
             for (s, n) in segments.iter().zip(shares) {
                 let rank = if matches!(rule.target, Target::Patches(_)) { PATCH } else { FACE };
-                settle(&mut self.division[*s], Ruled { rank, rule: *index, value: Division::Count(n) }, "count", effects);
+                settle(&mut self.division[*s], Ruled { rank, rule: *index, value: RuleDivision::Count(n) }, "count", effects);
             }
         }
         Ok(())
