@@ -1,6 +1,6 @@
 //! Unknown counts of segments, the equations between them, and why these may have no solution.
 
-/// One segment (or one inner direction of a face without a side that could tell).
+/// One segment (or one inner direction of a face, whose sides may all be poles).
 #[derive(Clone, Debug)]
 pub struct Unknown {
     /// Least count that limits (chord, angle, shape) allow, with at least 1.

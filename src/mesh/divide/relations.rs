@@ -17,7 +17,7 @@ use crate::mesh::size::sizing::{Decision, MOST, Sizing};
 
 /// A direction of a face as an unknown: what its rows want.
 #[derive(Clone, Debug)]
-struct Row {
+struct RowUnknown {
     face: usize,
     segment: Unknown,
     /// The limit behind `least`, once the finished face has raised it.
@@ -30,7 +30,7 @@ pub struct Relations {
     /// The equations.
     pub list: Vec<Relation>,
     face_of: Vec<usize>,
-    rows: Vec<Row>,
+    rows: Vec<RowUnknown>,
     first_row: usize,
     /// Rows of each face: along u and v; of a triangle one, or three for its sides.
     pub of_face: Vec<Vec<usize>>,
@@ -101,7 +101,7 @@ impl Relations {
     fn row(&mut self, face: usize, demand: &RowDemand, least: u32) -> usize {
         let least = whole(demand.least).max(least);
         let segment = Unknown { least, demand: whole(demand.size).max(least), written: None, length: demand.length, even: false };
-        self.rows.push(Row { face, segment, limit: MeshLimit::Size });
+        self.rows.push(RowUnknown { face, segment, limit: MeshLimit::Size });
         let row = self.first_row + self.rows.len() - 1;
         self.of_face[face].push(row);
         row

@@ -17,7 +17,9 @@ use crate::mesh::size::too_large::{of_segment, too_many_steps};
 pub(crate) fn of_count(input: &Input, layout: &Layout, sizing: &Sizing, k: usize, count: u32) -> Origin {
     let (plan, decision) = (input.plan, &sizing.decisions[k]);
     let own = decision.count.map_or(decision.demand, |c| c.0).max(decision.least);
-    let (Some(limit), true) = (plan.settings.chord_error.or(plan.settings.angle_error), f64::from(count) > BY_ROWS * f64::from(own)) else {
+    let (Some(limit), true) =
+        (plan.settings.chord_error.or(plan.settings.angle_error), f64::from(count) > MIN_RATIO_BY_ROWS * f64::from(own))
+    else {
         return of_segment(input, layout, sizing, k);
     };
     let Some(angle) = plan.settings.angle_error.filter(|_| plan.settings.chord_error.is_some()) else { return limit.1 };
@@ -34,7 +36,7 @@ pub(crate) fn of_count(input: &Input, layout: &Layout, sizing: &Sizing, k: usize
 }
 
 /// Steps over those that a segment demands itself from which rows decide.
-const BY_ROWS: f64 = 1.1;
+const MIN_RATIO_BY_ROWS: f64 = 1.1;
 
 /// The elements that counts of segments and rows make, those inside free faces left out; E217 where a mesh may not have so many.
 /// `rows_of_face` are the rows of each face, as in [`super::relations::Relations::of_face`].

@@ -41,11 +41,10 @@ const MAX_SEARCHES: usize = 24;
 /// Times that the steps of the border of a face that closes on itself are halved for it.
 const HALVED: u32 = 6;
 
-/// Surfaces that are made ready once for their borders, faces and bounds, where there are few: each takes many times the room
-/// of its net.
+/// Surfaces whose power forms are kept for their borders, faces and bounds: each takes many times the room of its net.
 const HELD: usize = 64;
 
-/// The surfaces of faces that are surely made freely under limits, ready for many evaluations.
+/// Power forms of the surfaces of faces that are surely made freely under limits.
 fn held(input: &Input, layout: &Layout, limits: &Limits) -> Vec<PowerForm> {
     if limits.chord.is_none() && limits.angle.is_none() {
         return Vec::new();
@@ -345,7 +344,7 @@ fn written(layout: &Layout, sizing: &Sizing, face: usize) -> [bool; 2] {
 fn finished<'a>(layout: &'a Layout, sizing: &Sizing, prepared: &'a [FaceMesh], demands: &'a [[RowDemand; 2]]) -> Vec<Finished<'a>> {
     let one = |(f, (triangles, _)): (usize, FaceRanges)| Finished {
         face: &layout.faces[f],
-        ready: &prepared[f],
+        face_mesh: &prepared[f],
         triangles,
         demands: &demands[f],
         written: written(layout, sizing, f),

@@ -5,15 +5,15 @@ use glam::{DVec2, DVec3};
 use crate::base::par;
 use crate::mesh::border::inside::trace;
 use crate::mesh::border::layout::{Face, Layout};
-use crate::mesh::deviation::{poles, triangle};
+use crate::mesh::deviation::edge_length::{self, EdgePlace};
+use crate::mesh::deviation::poles;
 use crate::mesh::request::input::Input;
 use crate::mesh::request::limits::Limits;
 use crate::mesh::request::methods::Method;
 use crate::mesh::size::border_spacing::{BorderSpacing, FILLED, SPACING_SETTINGS};
-use crate::mesh::size::gaps::{self, Beside, PLACES};
+use crate::mesh::size::gaps::{self, PLACES, SegmentBeside};
 use crate::mesh::size::spacing_solver::SpacingInput;
-use crate::surface::Surface;
-use crate::surface::core::power_form::PowerForm;
+use crate::surface::Evaluator;
 
 /// Lowers spacings to the lengths that the bends of free faces allow.
 pub(super) fn lower_to_bends(input: &Input, layout: &Layout, given: &SpacingInput, spacings: &mut [BorderSpacing]) {
@@ -57,20 +57,21 @@ fn level(lengths: &mut [f64], step: f64) {
 }
 
 /// Wanted lengths along the segments of one face.
-fn of_face(input: &Input, layout: &Layout, own: &Face, rows: &[Beside], limits: &Limits) -> Vec<(usize, Vec<f64>)> {
+fn of_face(input: &Input, layout: &Layout, own: &Face, rows: &[SegmentBeside], limits: &Limits) -> Vec<(usize, Vec<f64>)> {
     let surface = &input.model.surfaces[own.surface.index()].surface;
     if !own.free || surface.is_flat() {
         return Vec::new();
     }
-    let quick = surface.power_form();
+    let power_form = surface.power_form();
+    let evaluator = Evaluator::new(surface, power_form.as_ref());
     let mut found = Vec::new();
     let apart = |segment: usize| layout.length(segment) / PLACES as f64;
     // Cells halve by twos and fit best where a curve has one length; `display` joins them again.
     let by_cells = own.method == Method::Isoline;
-    let both = |row: &Beside, apart: f64| {
+    let both = |row: &SegmentBeside, apart: f64| {
         let curve = |i: usize| if by_cells { f64::INFINITY } else { by_curve(&row.points, i, limits) };
-        let wanted = BentRow { surface, quick: quick.as_ref(), row, apart, size: own.size.0, limits };
-        let lengths = if own.method.is_coarse() { wanted.coarse_lengths(own.method == Method::Display) } else { wanted.lengths() };
+        let bent = BentRow { evaluator, row, apart, size: own.size.0, limits };
+        let lengths = if own.method.is_coarse() { bent.coarse_lengths(own.method == Method::Display) } else { bent.lengths() };
         lengths.into_iter().enumerate().map(|(i, length)| length.min(curve(i))).collect::<Vec<_>>()
     };
     for (u, row) in own.sides.iter().flat_map(|side| &side.uses).zip(rows) {
@@ -79,7 +80,7 @@ fn of_face(input: &Input, layout: &Layout, own: &Face, rows: &[Beside], limits: 
     for line in &own.lines {
         let points: Vec<DVec3> = (0..=PLACES).map(|k| layout.point(*line, k as f64 / PLACES as f64)).collect();
         let places = trace(surface, &input.model.patches[own.patch.index()], &points);
-        let row = Beside::new(surface, places, points, input.tolerance.point * gaps::SLIGHT);
+        let row = SegmentBeside::new(surface, places, points, input.tolerance.point * gaps::SLIGHT);
         found.push((*line, both(&row, apart(*line))));
     }
     found
@@ -98,9 +99,8 @@ fn by_curve(points: &[DVec3], i: usize, limits: &Limits) -> f64 {
 
 /// A row of places along a segment beside a bent face.
 struct BentRow<'a> {
-    surface: &'a Surface,
-    quick: Option<&'a PowerForm>,
-    row: &'a Beside,
+    evaluator: Evaluator<'a>,
+    row: &'a SegmentBeside,
     /// Distance of neighbouring places, model units.
     apart: f64,
     /// Target size of the face, model units.
@@ -112,21 +112,21 @@ impl BentRow<'_> {
     /// Lengths at all places so that triangles on both sides of the row keep the limits, the chord error less how far
     /// the row is off the surface within a step.
     fn lengths(&self) -> Vec<f64> {
-        let Self { surface, quick, row, apart, size, limits } = *self;
+        let Self { evaluator, row, apart, size, limits } = *self;
         let last = row.places.len() - 1;
         let step = |i: usize| DVec2::from(row.places[(i + 1).min(last)]) - DVec2::from(row.places[(i + 1).min(last) - 1]);
-        let tangents = |at: DVec2| surface.tangents_by(quick, at.x, at.y);
+        let tangents = |at: DVec2| evaluator.tangents(at.x, at.y);
         let length = |i: usize, off: f64| {
-            let chord = limits.chord.map(|limit| gaps::left(limit, off));
+            let chord = limits.chord.map(|limit| gaps::remaining_chord_error(limit, off));
             let wanted = |at: DVec2| {
-                let jet = surface.jet_by(quick, at.x, at.y);
-                let plain = triangle::wanted(&jet, chord, limits.angle).min(size / FILLED);
+                let jet = evaluator.jet(at.x, at.y);
+                let plain = edge_length::wanted(&jet, chord, limits.angle).min(size / FILLED);
                 let along = jet.du * step(i).x + jet.dv * step(i).y;
-                let sure = |limit| triangle::surely((surface, quick), (at, &jet), along, (limit, plain));
-                SPACING_SETTINGS.border_ratio * FILLED * chord.map_or(plain, sure)
+                let bounded = |limit| edge_length::bounded(evaluator, EdgePlace { at, jet: &jet, along }, limit, plain);
+                SPACING_SETTINGS.border_ratio * FILLED * chord.map_or(plain, bounded)
             };
             let at = DVec2::from(row.places[i]);
-            poles::at_tip(surface, &tangents, at, &wanted).unwrap_or_else(|| wanted(at))
+            poles::at_tip(evaluator.surface(), &tangents, at, &wanted).unwrap_or_else(|| wanted(at))
         };
         let within = |i: usize, h: f64| {
             let reach = (h / apart).ceil().min(last as f64) as usize;
@@ -176,20 +176,27 @@ impl BentRow<'_> {
 
     /// The same where triangles may be long, and along the border `sheared`: an edge is no longer than the length wanted at any place on it.
     fn coarse_lengths(&self, sheared: bool) -> Vec<f64> {
-        let Self { surface, quick, row, apart, size, limits } = *self;
+        let Self { evaluator, row, apart, size, limits } = *self;
         let last = row.places.len() - 1;
-        let wide = surface.hull().diagonal().min(size);
+        let wide = evaluator.surface().hull().diagonal().min(size);
         let step = |i: usize| DVec2::from(row.places[(i + 1).min(last)]) - DVec2::from(row.places[(i + 1).min(last) - 1]);
         let length = |i: usize| {
             let at = row.places[i];
-            let jet = surface.jet_by(quick, at.0, at.1);
+            let jet = evaluator.jet(at.0, at.1);
             // At a pole there is nothing across, and what is beside it decides.
             if poles::is_pole(&|_| [jet.p, jet.du, jet.dv], at.into()) {
                 return size;
             }
             let along = jet.du * step(i).x + jet.dv * step(i).y;
-            let chord = limits.chord.map(|limit| gaps::left(limit, row.off[i]));
-            triangle::wanted_along((surface, quick), (DVec2::from(at), &jet), along, (chord, limits.angle), (wide, sheared)).min(size)
+            let chord = limits.chord.map(|limit| gaps::remaining_chord_error(limit, row.off[i]));
+            edge_length::on_coarse_border(
+                evaluator,
+                EdgePlace { at: at.into(), jet: &jet, along },
+                &Limits { chord, ..*limits },
+                wide,
+                sheared,
+            )
+            .min(size)
         };
         let lengths: Vec<f64> = (0..=last).map(length).collect();
         // An edge about a place reaches half its length to both sides.

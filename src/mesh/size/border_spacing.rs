@@ -163,7 +163,7 @@ impl BorderSpacing {
         };
         let sum: f64 = length * (1..self.at.len()).map(part).sum::<f64>();
         let n = (sum - WHOLE_NUMBER).ceil().clamp(1.0, f64::from(most)) as u32;
-        // Even steps are what the size asks for at the least.
+        // Even steps are what the size demands at least.
         n.max((length / size - WHOLE_NUMBER).ceil().clamp(1.0, f64::from(most)) as u32)
     }
 

@@ -19,7 +19,7 @@ use crate::mesh::size::border_spacing::BorderSpacings;
 pub(super) const MAX_COUNT: u32 = MESH_STEPS + 1;
 
 /// Largest turn of a border across one step where triangles may be as long as the chord error lets them, radians: 60°. What
-/// stands beside a step that turns more leans over the surface, however small it is.
+/// stands beside a step that turns more is tilted against the surface, however small it is.
 const MAX_TURN: f64 = FRAC_PI_3;
 
 /// Elements have no more steps of borders each.
@@ -54,7 +54,7 @@ pub(super) fn for_limits(
     })
 }
 
-/// Segments whose steps a chord error alone may make so long that triangles beside them lean: those of bent faces made with
+/// Segments whose steps a chord error alone may make so long that triangles beside them are tilted: those of bent faces made with
 /// as few triangles as may be.
 fn coarse_borders(input: &Input, layout: &Layout, limits: &Limits) -> Vec<bool> {
     let mut found = vec![false; layout.pieces.segments.len()];

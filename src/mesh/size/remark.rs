@@ -1,4 +1,4 @@
-//! What is to be said about the rules of a mesh.
+//! Remarks on a mesh and on the rules of its plan.
 
 use crate::model::fault::ModelFault;
 use glam::DVec3;
@@ -12,7 +12,7 @@ use crate::mesh::request::input::Input;
 use crate::mesh::size::rule_effects::{FREE_ONLY, KEYS, free_only_origin};
 use crate::model::fault::Touching;
 
-/// What is to be said about a mesh and the rules of its plan, by their places in it.
+/// A remark on a mesh or on the rules of its plan, by their places in it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Remark {
     /// W701: a rule without effect.
@@ -51,7 +51,7 @@ pub enum Remark {
 }
 
 impl Remark {
-    /// What is to be said of the sharp angles of two parts of a mesh: the least is told.
+    /// The remark on the sharp angles of two parts of a mesh: that on the least.
     pub fn sharper(self, other: Self) -> Self {
         match (self, other) {
             (Self::Sharp { angle: a, at, surface, faces: n, cure }, Self::Sharp { angle: b, faces: m, .. }) if a <= b => {

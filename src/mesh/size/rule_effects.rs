@@ -21,7 +21,7 @@ pub(crate) fn free_only_origin(plan: &Plan, key: &str) -> Option<Origin> {
 /// Settings of which one rule may override another.
 pub(crate) const KEYS: [&str; 5] = ["count", "size", "bias", "elements", "method"];
 
-/// Effects of the rules of a plan, then of its `near` and `in` clauses, then of [`FREE_ONLY`].
+/// Effects of the rules of a plan, then of its `near` and `in` clauses, then of settings that only faces made freely know.
 #[derive(Clone, Debug, Default)]
 pub struct RuleEffects {
     /// Whether each decided something.

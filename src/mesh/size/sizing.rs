@@ -57,7 +57,7 @@ pub struct Sizing {
     pub required_on_mapped: BorderSpacings,
     /// The bias rule of each segment.
     pub bias_rule: Vec<Option<usize>>,
-    /// What `near`, `in` and `min_size` ask for.
+    /// Sizes requested by `near`, `in` and `min_size`.
     pub wanted: SizeRequests,
     /// The remark on sharp angles.
     pub sharp: Option<Remark>,

@@ -26,7 +26,7 @@ pub(super) fn lowered(layout: &Layout, segment: usize, spacing: &BorderSpacing, 
 }
 
 /// A place on a segment.
-struct Spot {
+struct SpacingSample {
     f: f64,
     p: DVec3,
     length: f64,
@@ -47,21 +47,21 @@ struct Sampler<'a> {
 }
 
 impl Sampler<'_> {
-    fn place(&self, f: f64) -> Spot {
+    fn place(&self, f: f64) -> SpacingSample {
         let p = self.layout.point(self.segment, f);
         let own = self.spacing.length_at(f).min(self.cap);
         let found = self.sources.who(p, own);
         let length = found.map_or(own, |l| l.size);
-        Spot { f, p, length, own, item: found.map(|l| l.item) }
+        SpacingSample { f, p, length, own, item: found.map(|l| l.item) }
     }
 
-    fn push(&mut self, spot: &Spot) {
+    fn push(&mut self, spot: &SpacingSample) {
         self.lowered.at.push(spot.f);
         self.lowered.lengths.push(spot.length);
     }
 
     /// Halves the way between two places until lengths can hardly change on it.
-    fn between(&mut self, a: &Spot, b: &Spot, left: u32) {
+    fn between(&mut self, a: &SpacingSample, b: &SpacingSample, left: u32) {
         let gap = (b.f - a.f) * self.layout.length(self.segment);
         // No source wants less than is there already; what sources want at both ends says nothing of the way between.
         let settled = a.own.max(b.own) <= self.sources.least() * (1.0 + WHOLE_NUMBER);

@@ -13,7 +13,7 @@ use crate::mesh::request::size_requests::SizeRequests;
 use crate::mesh::request::sources::{Body, STEEP, Source, Sources};
 use crate::mesh::size::bend_spacing::lower_to_bends;
 use crate::mesh::size::border_spacing::{BorderSpacing, BorderSpacings, SPACING_SETTINGS};
-use crate::mesh::size::gaps::Beside;
+use crate::mesh::size::gaps::SegmentBeside;
 use crate::mesh::size::proximity::Narrow;
 use crate::mesh::size::spacing_sampler::lowered;
 use crate::mesh::size::too_large;
@@ -31,12 +31,12 @@ pub(super) struct SpacingInput<'a> {
     /// Places where borders face each other.
     pub narrow: &'a [Narrow],
     /// What runs beside each face.
-    pub rows: &'a [Vec<Beside>],
+    pub rows: &'a [Vec<SegmentBeside>],
 }
 
 /// The spacings of segments whose steps vary: on free faces under limits, elsewhere where something is refined or neighbours are shorter.
 /// Segments of mapped faces follow the bends of free ones beside them and nothing else: their rows are even. The second
-/// list has the spacings that those would have to follow, were they not. E217 where bends alone ask for too much.
+/// list has the spacings that those would have to follow, were they not. E217 where bends alone demand too many steps.
 pub(super) fn spacings(input: &Input, layout: &Layout, given: &SpacingInput) -> Result<(BorderSpacings, BorderSpacings)> {
     let n = layout.pieces.segments.len();
     let mut spacings: Vec<BorderSpacing> = given.size.iter().map(|s| BorderSpacing::even(*s)).collect();
@@ -102,7 +102,7 @@ impl SpacingSolver<'_> {
         let mut places: [Vec<Vec<(f64, f64)>>; 2] = [vec![Vec::new(); self.even.len()], vec![Vec::new(); self.even.len()]];
         for narrow in self.given.narrow {
             if self.given.written[narrow.segment].is_none() {
-                let left = usize::from(self.even[narrow.segment] && !narrow.must);
+                let left = usize::from(self.even[narrow.segment] && !narrow.crossing);
                 places[left][narrow.segment].push((narrow.f, narrow.size));
             }
         }

@@ -7,14 +7,14 @@ use crate::mesh::request::methods::{Elements, Method};
 use crate::mesh::size::sizing::Sizing;
 
 /// A step next to one shorter than this share of it makes angles below 7°.
-const SHARE: f64 = 0.125;
+const MIN_STEP_RATIO: f64 = 0.125;
 
 /// Faces of triangles, mapped because nothing says otherwise, that are better made freely. What is written stays.
 pub fn find(layout: &Layout, nodes: &Nodes, near: f64, sizing: &Sizing) -> Vec<(usize, Uneven)> {
     let mut required_on_mapped: Vec<Option<f64>> = vec![None; layout.pieces.segments.len()];
     for (k, spacing) in sizing.required_on_mapped.iter().enumerate() {
         let least = spacing.as_ref().map_or(f64::INFINITY, |spacing| spacing.least());
-        required_on_mapped[k] = (least + near < SHARE * layout.length(k) / f64::from(nodes.count(k))).then_some(least);
+        required_on_mapped[k] = (least + near < MIN_STEP_RATIO * layout.length(k) / f64::from(nodes.count(k))).then_some(least);
     }
     let of = |face: &Face| {
         if face.free || face.method != Method::Auto || face.elements != Elements::Triangles || counted(face, sizing) {
@@ -40,10 +40,10 @@ fn row(face: &Face, nodes: &Nodes, near: f64) -> Option<f64> {
     let longest = |k: usize| all[k].iter().copied().fold(0.0, f64::max);
     let mut found: Option<f64> = None;
     for (k, own) in all.iter().enumerate() {
-        // A row that is narrow among rows as long is what limits ask for.
+        // A row that is narrow among rows as long is what limits demand.
         let beside = [(k + 1) % n, (k + n - 1) % n].map(longest);
         let across = beside.into_iter().filter(|step| *step > 0.0).fold(longest(k), f64::min);
-        found = own.iter().copied().filter(|step| *step + near < SHARE * across).chain(found).reduce(f64::min);
+        found = own.iter().copied().filter(|step| *step + near < MIN_STEP_RATIO * across).chain(found).reduce(f64::min);
     }
     found
 }
