@@ -64,21 +64,21 @@ pub fn place(input: &Input, layout: &mut Layout) {
 }
 
 /// A segment of the border of a face, inside a ball.
-struct Rim {
+struct RimSegment {
     segment: usize,
     center: DVec3,
     radius: f64,
 }
 
-impl Rim {
+impl RimSegment {
     fn is_near(&self, layout: &Layout, p: DVec3, near: f64) -> bool {
         self.center.distance(p) <= self.radius + near && layout.distance(self.segment, p) <= near
     }
 }
 
 /// The segments round a face; no point of one is farther from its middle than half its length.
-fn rim(layout: &Layout, around: &BTreeSet<usize>) -> Vec<Rim> {
-    let of = |k: &usize| Rim { segment: *k, center: layout.point(*k, 0.5), radius: 0.5 * layout.length(*k) };
+fn rim(layout: &Layout, around: &BTreeSet<usize>) -> Vec<RimSegment> {
+    let of = |k: &usize| RimSegment { segment: *k, center: layout.point(*k, 0.5), radius: 0.5 * layout.length(*k) };
     around.iter().map(of).collect()
 }
 

@@ -9,7 +9,7 @@ use crate::surface::Domain;
 type Checked = Result<(), String>;
 
 /// Share of the tolerance within which two segments between the same junctions are one for certain.
-const ONE: f64 = 0.1;
+const MAX_SAME_SHARE: f64 = 0.1;
 
 impl Layout {
     /// Each segment is there once and runs along the track that gives its geometry; the segments of a track follow each other from its
@@ -81,7 +81,8 @@ impl Layout {
         order.sort_by_key(|k| (ends(*k), *k));
         for same in order.chunk_by(|a, b| ends(*a) == ends(*b)) {
             for (n, b) in same.iter().enumerate() {
-                let lies = |a: &&usize| [0.25, 0.5, 0.75].iter().all(|f| self.distance(**a, self.point(*b, *f)) <= ONE * tolerance);
+                let lies =
+                    |a: &&usize| [0.25, 0.5, 0.75].iter().all(|f| self.distance(**a, self.point(*b, *f)) <= MAX_SAME_SHARE * tolerance);
                 if let Some(a) = same[..n].iter().find(lies) {
                     return Err(format!("stretches {a} and {b} are one"));
                 }

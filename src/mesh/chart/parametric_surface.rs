@@ -1,4 +1,4 @@
-//! What the free mesher asks of a surface and of a size: nothing else is known here.
+//! What the free mesher evaluates of a surface and of a size: nothing else is known here.
 
 use glam::{DVec2, DVec3};
 
