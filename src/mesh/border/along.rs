@@ -1,4 +1,4 @@
-//! Segments along borders, chains and what rules speak of.
+//! Segments along borders, chains and what rules apply to.
 
 use crate::mesh::border::beside;
 use crate::mesh::border::layout::Layout;

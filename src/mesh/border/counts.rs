@@ -16,7 +16,7 @@ pub fn share(total: u32, weights: &[f64], near: f64, least: &[u32]) -> Option<Ve
     let quota: Vec<f64> = weights.iter().map(|w| if sum > 0.0 { w / sum * f64::from(total) } else { 0.0 }).collect();
     let near = WHOLE_NUMBER + if sum > 0.0 { near / sum * f64::from(total) } else { 0.0 };
     let mut shares: Vec<u32> = quota.iter().zip(least).map(|(q, l)| ((q + near).floor() as u32).max(*l)).collect();
-    // What the least shares took from the others goes back where it hurts least.
+    // What the least shares took from the others is given back where the shares exceed their quotas most.
     while shares.iter().sum::<u32>() > total {
         let over = |i: &usize| f64::from(shares[*i]) - quota[*i];
         let i = largest((0..shares.len()).filter(|i| shares[*i] > least[*i]), over, near)?;

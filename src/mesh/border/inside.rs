@@ -159,7 +159,7 @@ pub fn crossings(input: &Input, patches: &[PatchId], track: &Track) -> Vec<f64> 
         for (along, walls) in [us, vs].into_iter().enumerate() {
             for wall in walls {
                 let wall = Wall { at: wall, near: 2.0 * input.tolerance.point };
-                // The last sample truly on one side of the line; those on it say nothing.
+                // The last sample truly on one side of the line; those on it do not count.
                 let mut last: Option<(usize, f64)> = None;
                 for (k, place) in feet.iter().enumerate() {
                     let Some(place) = place else {

@@ -45,23 +45,23 @@ pub struct Face {
     pub method: Method,
     /// Made freely: grown from its border instead of mapped.
     pub free: bool,
-    /// Target size inside, model units, and the rule that says so.
+    /// Target size inside, model units, and its rule.
     pub size: (f64, Option<usize>),
     /// How far its border may be from the surface, model units: what its edges were glued over.
     pub near: f64,
     /// Sides in the order of the patch: four, or three of a triangle.
     pub sides: Vec<FaceSide>,
-    /// Why it is made freely though it has a map.
+    /// Why it is meshed freely though it has a map.
     pub uneven: Option<Uneven>,
-    /// It stays mapped whatever its map is like: made freely it failed, or turned out worse.
+    /// It stays mapped whatever its map is like: meshed freely it failed, or turned out worse.
     pub kept: bool,
-    /// Elements that it was foreseen to have where it is made freely for better angles.
+    /// Elements that it was foreseen to have where it is meshed freely for better angles.
     pub foreseen_free: u64,
     /// The least angle that its map was foreseen to have, radians.
     pub foreseen: Option<f64>,
     /// Times that the steps of its border were halved because it closes on itself and its elements did not keep apart.
     pub halved: u32,
-    /// Why it is made freely though no method says so, in words that follow "a face".
+    /// Why it is meshed freely though no method is written, in words that follow "a face".
     pub why: Option<String>,
     /// Segments of curves inside it.
     pub lines: Vec<usize>,
@@ -70,7 +70,7 @@ pub struct Face {
 }
 
 impl Face {
-    /// Keeps its map from now on: made freely it turned out worse.
+    /// Keeps its map from now on: meshed freely it turned out worse.
     pub fn keep_map(&mut self) {
         (self.uneven, self.kept) = (None, true);
     }
@@ -80,12 +80,12 @@ impl Face {
         self.sides.len() == 3
     }
 
-    /// Whether it is made freely of nothing but quads.
+    /// Whether it is meshed freely of nothing but quads.
     pub fn takes_quads(&self) -> bool {
         self.free && self.elements == Elements::Quads
     }
 
-    /// Whether it is made freely of triangles that are all alike.
+    /// Whether it is meshed freely of triangles that are all alike.
     pub fn is_grown(&self) -> bool {
         self.free && self.elements == Elements::Triangles && !matches!(self.method, Method::Display | Method::Isoline)
     }
@@ -281,7 +281,7 @@ pub fn middle(input: &Input, face: &Face) -> DVec3 {
     }
 }
 
-/// Why a mapped face is made freely.
+/// Why a mapped face is meshed freely.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Uneven {
     /// A row would be as narrow as a piece of its border, model units.
@@ -294,7 +294,7 @@ pub enum Uneven {
     Together,
 }
 
-/// Whether a face that is made freely meets itself at a seam or in a pole.
+/// Whether a face that is meshed freely meets itself at a seam or in a pole.
 pub(crate) fn closes(face: &Face) -> bool {
     let mut round: Vec<usize> = face.sides.iter().flat_map(|s| s.segments()).collect();
     let all = round.len();

@@ -8,7 +8,7 @@ use crate::surface::Domain;
 /// What is wrong, in a sentence.
 type Checked = Result<(), String>;
 
-/// Share of the tolerance within which two segments between the same junctions are one for certain.
+/// Share of the tolerance within which two segments between the same junctions count as one.
 const MAX_SAME_SHARE: f64 = 0.1;
 
 impl Layout {

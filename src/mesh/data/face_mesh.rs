@@ -43,7 +43,7 @@ pub struct FreeInside {
     pub loops: Vec<[u32; 2]>,
     /// What decided the sizes inside.
     pub deciders: Vec<Decider>,
-    /// Its cells between lines of constant u and v, where it was made of such.
+    /// Its cells between lines of constant u and v, where it was made of these.
     pub tally: Option<Tally>,
 }
 

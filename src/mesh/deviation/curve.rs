@@ -185,7 +185,7 @@ impl LimitedSegment<'_> {
         let length = segment.s.1 - segment.s.0;
         let (a, b) = (segment.s.0 + length * fractions[k], segment.s.0 + length * fractions[k + 1]);
         let steps = (fractions.len() - 1) as f64;
-        // What is kept for sure need not be known closer.
+        // A bound that keeps the limit need not be closer.
         let most = StepAllowance {
             chord: limits.chord.map_or(f64::INFINITY, |limit| limit * (1.0 + limits.chord_room(length))),
             angle: limits.angle.map_or(f64::INFINITY, |limit| limit * (1.0 + limits.turn_room(length, limit * steps))),

@@ -209,7 +209,7 @@ struct BorderSide {
     span: f64,
 }
 
-/// A flat triangle over places, and what ranges of second derivatives say of the surface there.
+/// A flat triangle over places, and the bounds that ranges of second derivatives give for the surface there.
 struct Flat {
     normal: DVec3,
     /// Box of the places.

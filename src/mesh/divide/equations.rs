@@ -29,7 +29,7 @@ pub enum Relation {
 /// Why there is no solution. Indices are of segments and relations.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Conflict {
-    /// Two written counts meet: sums of both sides and a written segment behind each (`None` where only size speaks).
+    /// Two written counts meet: sums of both sides and a written segment behind each (`None` where only the size decides).
     Differ {
         /// The face's relation.
         relation: usize,

@@ -21,7 +21,7 @@ pub struct RowDemand {
     pub least: f64,
     /// Longest row, model units.
     pub length: f64,
-    /// Largest second difference along the rows, normal part, a step of the sample grid: what refinement goes by.
+    /// Largest second difference along the rows, normal part, a step of the sample grid: by which directions are refined.
     pub bend: f64,
 }
 

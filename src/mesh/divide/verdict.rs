@@ -75,7 +75,7 @@ pub struct Finished<'a> {
     pub triangles: std::ops::Range<usize>,
     /// Sampled bends, to choose the direction of refinement.
     pub demands: &'a [RowDemand; 2],
-    /// Directions whose counts are written out: the size does not speak there.
+    /// Directions whose counts are written out: the size does not act there.
     pub written: [bool; 2],
 }
 
@@ -172,7 +172,7 @@ fn sizes(finished: &Finished, mesh: &Mesh, near: f64, verdict: &mut Verdict) {
             }
             verdict.size = [longest.sqrt() / most; 2];
         }
-        // What is made freely keeps its limits by itself.
+        // What is meshed freely keeps its limits by itself.
         FaceNodes::Free(..) => {}
         FaceNodes::Blocks(blocks, places) => {
             let inner = blocks.inner as u32;

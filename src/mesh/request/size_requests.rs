@@ -35,7 +35,7 @@ pub struct SizeRequests {
 }
 
 impl SizeRequests {
-    /// Of a plan whose size is `size` where no rule says another.
+    /// Of a plan whose size is `size` where no rule gives another.
     ///
     /// Fails with E707 where a size is below a written `min_size`.
     pub fn new(input: &Input, size: f64) -> Result<Self> {

@@ -46,7 +46,7 @@ pub fn apply_rules(input: &Input, layout: &mut Layout, size: f64, effects: &mut 
     note_inapplicable(input, layout, effects);
 }
 
-/// Notes the rules on surfaces and faces that say nothing of any face.
+/// Notes the rules on surfaces and faces that give no face a setting.
 fn note_inapplicable(input: &Input, layout: &Layout, effects: &mut RuleEffects) {
     for (index, rule) in input.plan.rules.iter().enumerate() {
         let what = match rule.target {

@@ -48,7 +48,7 @@ pub(super) fn for_limits(
             StableHasher::new("steps").with(&(track, segment.s, (bias, &limits, u64::from(most)))).finish()
         };
         let find = || least_steps(layout, k, &divided, &limits, most);
-        // Without a limit there is nothing to find out; a spacing is not in the key.
+        // Without a limit there is nothing to find; a spacing is not in the key.
         let is_worth = (limits.chord.is_some() || limits.angle.is_some()) && spacings[k].is_none();
         if is_worth { recall(&key, &find) } else { find() }
     })
@@ -66,7 +66,7 @@ fn coarse_borders(input: &Input, layout: &Layout, limits: &Limits) -> Vec<bool> 
     found
 }
 
-/// Least steps of the borders of a face that is made freely between two poles, before they are halved: with fewer there may be
+/// Least steps of the borders of a face that is meshed freely between two poles, before they are halved: with fewer there may be
 /// nothing inside.
 const MIN_CLOSED_COUNT: u32 = 4;
 

@@ -43,7 +43,7 @@ pub enum Remark {
         at: DVec3,
         /// Surface of its face.
         surface: String,
-        /// How many faces have such.
+        /// How many faces have such angles.
         faces: usize,
         /// The setting to change there.
         cure: Cure,

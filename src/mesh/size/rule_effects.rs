@@ -10,7 +10,7 @@ use crate::mesh::request::sources::Sources;
 use crate::mesh::size::border_spacing::BorderSpacings;
 use crate::mesh::size::remark::Remark;
 
-/// Settings of the whole mesh that only faces made freely know; they follow the clauses in [`RuleEffects`].
+/// Settings of the whole mesh that act on free faces only; they follow the clauses in [`RuleEffects`].
 pub(crate) const FREE_ONLY: [&str; 2] = ["smooth", "growth"];
 
 /// Where one of them is written.
@@ -21,7 +21,7 @@ pub(crate) fn free_only_origin(plan: &Plan, key: &str) -> Option<Origin> {
 /// Settings of which one rule may override another.
 pub(crate) const KEYS: [&str; 5] = ["count", "size", "bias", "elements", "method"];
 
-/// Effects of the rules of a plan, then of its `near` and `in` clauses, then of settings that only faces made freely know.
+/// Effects of the rules of a plan, then of its `near` and `in` clauses, then of settings that act on free faces only.
 #[derive(Clone, Debug, Default)]
 pub struct RuleEffects {
     /// Whether each decided something.
@@ -54,7 +54,7 @@ impl RuleEffects {
         self.overridden.push((earlier, later, key));
     }
 
-    /// Settings that only faces made freely know are used where there are such faces, or where nobody wrote them.
+    /// Settings that act on free faces only are used where there are such faces, or where nobody wrote them.
     pub(super) fn check_free_only(&mut self, input: &Input, layout: &Layout) {
         let plan = input.plan;
         let free = layout.faces.iter().any(|face| face.free);

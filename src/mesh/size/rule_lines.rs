@@ -1,4 +1,4 @@
-//! The lines that rules on curves and edges speak of: their segments and links, and how a written count is shared out to these.
+//! The lines that rules on curves and edges apply to: their segments and links, and how a written count is shared out to these.
 
 use crate::mesh::border::counts::share;
 use crate::mesh::border::layout::Layout;
@@ -7,7 +7,7 @@ use crate::model::Course;
 use crate::model::segments::SegmentUse;
 use crate::network::Chain;
 
-/// A line that a rule speaks of, as it is in the mesh.
+/// A line that a rule applies to, as it is in the mesh.
 pub(super) struct RuleLine {
     /// Its segments along it.
     pub uses: Vec<SegmentUse>,

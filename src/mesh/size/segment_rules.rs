@@ -1,4 +1,4 @@
-//! What rules say of each segment: counts, sizes and biases, by rank.
+//! Settings that rules give each segment: counts, sizes and biases, by rank.
 
 use crate::base::fault::Result;
 use crate::base::text::article;
@@ -56,7 +56,7 @@ pub struct SegmentSettings {
     pub bias_rule: Option<usize>,
 }
 
-/// What rules say of the segments of a layout.
+/// The settings that rules give the segments of a layout.
 pub struct SegmentRules {
     division: Vec<Option<Ruled<RuleDivision>>>,
     bias: Vec<Option<Ruled<f64>>>,
@@ -96,7 +96,7 @@ impl SegmentRules {
         Ok(rules)
     }
 
-    /// The settings of a segment, with the size that its faces give it where no rule says one.
+    /// The settings of a segment, with the size that its faces give it where no rule gives one.
     pub fn of_segment(&self, k: usize, of_faces: (f64, Option<usize>)) -> SegmentSettings {
         let (count, size) = match self.division[k] {
             Some(Ruled { value: RuleDivision::Count(count), rule, .. }) => (Some((count, rule)), of_faces),
@@ -164,7 +164,7 @@ impl SegmentRules {
 }
 
 impl RuleAt<'_> {
-    /// Whether a rule on a curve or an edge, as `what` calls it, says something of lines in the mesh.
+    /// Whether a rule on a curve or an edge, as `what` calls it, gives settings to lines in the mesh.
     fn applies_to_lines(&self, what: &str, lines: &[RuleLine], effects: &mut RuleEffects) -> bool {
         let settings = &self.rule.settings;
         if lines.iter().all(|line| line.uses.is_empty()) {

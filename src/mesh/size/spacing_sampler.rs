@@ -63,7 +63,7 @@ impl Sampler<'_> {
     /// Halves the way between two places until lengths can hardly change on it.
     fn between(&mut self, a: &SpacingSample, b: &SpacingSample, left: u32) {
         let gap = (b.f - a.f) * self.layout.length(self.segment);
-        // No source wants less than is there already; what sources want at both ends says nothing of the way between.
+        // No source wants less than is there already; what sources want at both ends does not bound what they want between.
         let settled = a.own.max(b.own) <= self.sources.least() * (1.0 + WHOLE_NUMBER);
         if left == 0
             || settled

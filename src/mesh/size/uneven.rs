@@ -1,4 +1,4 @@
-//! Mapped faces that are better made freely: where a short piece of border would run through the whole face as a row of that
+//! Mapped faces that are better meshed freely: where a short piece of border would run through the whole face as a row of that
 //! width, and where their even rows meet borders of a free face that have, or need, much shorter steps.
 
 use crate::mesh::border::layout::{Face, FaceSide, Layout, Uneven};
@@ -9,7 +9,7 @@ use crate::mesh::size::sizing::Sizing;
 /// A step next to one shorter than this share of it makes angles below 7°.
 const MIN_STEP_RATIO: f64 = 0.125;
 
-/// Faces of triangles, mapped because nothing says otherwise, that are better made freely. What is written stays.
+/// Faces of triangles, mapped because no method is written, that are better meshed freely. What is written stays.
 pub fn find(layout: &Layout, nodes: &Nodes, near: f64, sizing: &Sizing) -> Vec<(usize, Uneven)> {
     let mut required_on_mapped: Vec<Option<f64>> = vec![None; layout.pieces.segments.len()];
     for (k, spacing) in sizing.required_on_mapped.iter().enumerate() {

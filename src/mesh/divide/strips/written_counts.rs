@@ -103,7 +103,7 @@ impl Solver<'_> {
         Some(())
     }
 
-    /// The same where parities are known: the strips with the longest steps get two more, until it is made up.
+    /// The same where parities are known: the strips with the longest steps get two more, until the target is reached.
     fn share_out_by_parity(&mut self, open: &[(usize, i64)], target: u32, by: usize) -> Option<()> {
         let mut counts: Vec<u32> = open.iter().map(|(s, _)| self.strips[*s].least.0).collect();
         let sum: u32 = counts.iter().zip(open).map(|(n, (_, c))| n * c.unsigned_abs() as u32).sum();
