@@ -72,9 +72,8 @@ fn projections(c: &mut Criterion) {
     let nearest = Nearest::new(&surface);
     let far = |distance: f64| assert!(distance < 0.5 + 1e-9, "{distance}");
     c.bench_function("net nearest points, 10 000", |b| b.iter(|| places.iter().for_each(|(_, p)| far(nearest.at(*p).distance))));
-    let quick = surface.power_form();
-    let foot =
-        |(uv, p): &((f64, f64), DVec3)| foot_within((&surface, quick.as_ref()), *p, (uv.0 + 0.003, uv.1 - 0.002), (0.0, 1.0), (0.0, 1.0));
+    let prepared = surface.prepared();
+    let foot = |(uv, p): &((f64, f64), DVec3)| foot_within(prepared.evaluator(), *p, (uv.0 + 0.003, uv.1 - 0.002), (0.0, 1.0), (0.0, 1.0));
     c.bench_function("net feet from a guess, 10 000", |b| b.iter(|| places.iter().for_each(|place| far(foot(place).0))));
 }
 

@@ -43,6 +43,7 @@ pub use crate::surface::closest::curve_extent::curve_bbox;
 pub use crate::surface::closest::foot::{foot_within, step};
 pub use crate::surface::closest::nearest::{Closest, Nearest, closest};
 pub use crate::surface::core::enclosure::Strip;
+pub use crate::surface::core::evaluator::{Evaluator, PreparedSurface};
 pub use crate::surface::core::evened::Evened;
 pub use crate::surface::core::surface::Surface;
 pub use crate::surface::data::breaks::chain_breaks;

@@ -8,7 +8,7 @@ use crate::mesh::request::input::Input;
 use crate::model::segments::SegmentUse;
 use crate::network::Chain;
 
-/// Shares of a segment at which it is looked at.
+/// Fractions of a segment at which it is sampled.
 const SAMPLE_SHARES: [f64; 7] = [0.0, 0.15, 0.3, 0.5, 0.7, 0.85, 1.0];
 
 /// Fractions of a chain at places of a segment; `None` where one is off it.
@@ -19,7 +19,7 @@ fn fractions(input: &Input, layout: &Layout, chain: &Chain, segment: usize) -> [
     })
 }
 
-/// Stretches whose ends lie in the box of a chain.
+/// Segments whose ends lie in the box of a chain.
 fn nearby<'a>(input: &'a Input, layout: &'a Layout, chain: &Chain) -> impl Iterator<Item = usize> + 'a {
     let around = chain.bbox();
     let at = |junction: usize| Box3::of([layout.pieces.junctions[junction]]);
@@ -30,7 +30,7 @@ fn nearby<'a>(input: &'a Input, layout: &'a Layout, chain: &Chain) -> impl Itera
     (0..layout.pieces.segments.len()).filter(near)
 }
 
-/// Stretches that lie on a chain, in its direction, with arc lengths on it.
+/// Segments that lie on a chain, in its direction, with arc lengths on it.
 pub fn lying_on(input: &Input, layout: &Layout, chain: &Chain) -> Vec<SegmentUse> {
     let length = chain.length();
     let place = |segment: usize| {
@@ -49,8 +49,8 @@ pub fn lying_on(input: &Input, layout: &Layout, chain: &Chain) -> Vec<SegmentUse
     found
 }
 
-/// Places of a chain at which it is looked at.
-const PLACES: u32 = 32;
+/// Places at which a chain is sampled.
+const CHAIN_SAMPLES: u32 = 32;
 
 /// The middle of a segment of a border that a chain runs along for a part of it only: the chain ends where no node is.
 pub fn cut_short(input: &Input, layout: &Layout, chain: &Chain, known: &[usize]) -> Option<DVec3> {
@@ -67,8 +67,8 @@ pub fn cut_short(input: &Input, layout: &Layout, chain: &Chain, known: &[usize])
         SAMPLE_SHARES.windows(2).any(|w| [w[0], 0.5 * (w[0] + w[1]), w[1]].into_iter().all(on))
     };
     let of_chain = |segment: usize| {
-        let on = |k: u32| layout.distance(segment, chain.point(f64::from(k) / f64::from(2 * PLACES))) <= near;
-        (0..PLACES).any(|k| (2 * k..2 * k + 3).all(on))
+        let on = |k: u32| layout.distance(segment, chain.point(f64::from(k) / f64::from(2 * CHAIN_SAMPLES))) <= near;
+        (0..CHAIN_SAMPLES).any(|k| (2 * k..2 * k + 3).all(on))
     };
     let mut open = (0..layout.pieces.segments.len()).filter(|segment| known.binary_search(segment).is_err());
     open.find(|segment| touches(segment) && (of_segment(*segment) || of_chain(*segment))).map(|segment| layout.point(segment, 0.5))

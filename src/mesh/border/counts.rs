@@ -7,7 +7,7 @@ use crate::base::tolerance::WHOLE_NUMBER;
 /// Weights that differ by no more than `near` are a tie.
 ///
 /// `None` when `total` is below the sum of the least shares.
-pub fn share(total: u32, (weights, near): (&[f64], f64), least: &[u32]) -> Option<Vec<u32>> {
+pub fn share(total: u32, weights: &[f64], near: f64, least: &[u32]) -> Option<Vec<u32>> {
     let floor: u32 = least.iter().sum();
     if total < floor {
         return None;
@@ -16,7 +16,7 @@ pub fn share(total: u32, (weights, near): (&[f64], f64), least: &[u32]) -> Optio
     let quota: Vec<f64> = weights.iter().map(|w| if sum > 0.0 { w / sum * f64::from(total) } else { 0.0 }).collect();
     let near = WHOLE_NUMBER + if sum > 0.0 { near / sum * f64::from(total) } else { 0.0 };
     let mut shares: Vec<u32> = quota.iter().zip(least).map(|(q, l)| ((q + near).floor() as u32).max(*l)).collect();
-    // What the least shares took from the others goes back where it hurts least.
+    // What the least shares took from the others is given back where the shares exceed their quotas most.
     while shares.iter().sum::<u32>() > total {
         let over = |i: &usize| f64::from(shares[*i]) - quota[*i];
         let i = largest((0..shares.len()).filter(|i| shares[*i] > least[*i]), over, near)?;
@@ -88,12 +88,12 @@ mod tests {
 
     #[test]
     fn shares_by_largest_remainder() {
-        assert_eq!(share(10, (&[3.0, 3.0, 4.0], 0.0), &[1; 3]), Some(vec![3, 3, 4]));
-        assert_eq!(share(10, (&[1.0, 1.0, 1.0], 0.0), &[1; 3]), Some(vec![4, 3, 3]));
-        assert_eq!(share(5, (&[100.0, 1.0, 1.0], 0.0), &[1; 3]), Some(vec![3, 1, 1]));
-        assert_eq!(share(3, (&[100.0, 1.0, 1.0], 0.0), &[1; 3]), Some(vec![1, 1, 1]));
-        assert_eq!(share(2, (&[100.0, 1.0, 1.0], 0.0), &[1; 3]), None);
-        assert_eq!(share(7, (&[0.5, 0.5], 0.0), &[1, 5]), Some(vec![2, 5]));
+        assert_eq!(share(10, &[3.0, 3.0, 4.0], 0.0, &[1; 3]), Some(vec![3, 3, 4]));
+        assert_eq!(share(10, &[1.0, 1.0, 1.0], 0.0, &[1; 3]), Some(vec![4, 3, 3]));
+        assert_eq!(share(5, &[100.0, 1.0, 1.0], 0.0, &[1; 3]), Some(vec![3, 1, 1]));
+        assert_eq!(share(3, &[100.0, 1.0, 1.0], 0.0, &[1; 3]), Some(vec![1, 1, 1]));
+        assert_eq!(share(2, &[100.0, 1.0, 1.0], 0.0, &[1; 3]), None);
+        assert_eq!(share(7, &[0.5, 0.5], 0.0, &[1, 5]), Some(vec![2, 5]));
     }
 
     #[test]

@@ -11,8 +11,8 @@ use crate::model::{PatchId, Trace, Track};
 use crate::surface::{Domain, OneSided, Side, Surface};
 
 /// A line that folds by less, radians (3°), is no crease that has to be seen.
-const CREASE: f64 = 0.052;
-/// Places along a line at which its fold is looked at.
+const MIN_FOLD: f64 = 0.052;
+/// Places along a line at which its fold is sampled.
 const MAX_SAMPLES: usize = 16;
 /// Samples of a border between which it crosses a kink line once at most.
 const SAMPLES: usize = 128;
@@ -42,7 +42,8 @@ pub fn of_patch(input: &Input, patch: PatchId) -> Vec<Part> {
                 }
                 // Nets of other programs have knots at which directions jump by a hair: held only for a limit on bends.
                 if !limited
-                    && (0..=MAX_SAMPLES).all(|k| fold(surface, axis, place(w[0] + (w[1] - w[0]) * k as f64 / MAX_SAMPLES as f64)) < CREASE)
+                    && (0..=MAX_SAMPLES)
+                        .all(|k| fold(surface, axis, place(w[0] + (w[1] - w[0]) * k as f64 / MAX_SAMPLES as f64)) < MIN_FOLD)
                 {
                     continue;
                 }

@@ -64,21 +64,21 @@ pub fn place(input: &Input, layout: &mut Layout) {
 }
 
 /// A segment of the border of a face, inside a ball.
-struct Rim {
+struct RimSegment {
     segment: usize,
     center: DVec3,
     radius: f64,
 }
 
-impl Rim {
+impl RimSegment {
     fn is_near(&self, layout: &Layout, p: DVec3, near: f64) -> bool {
         self.center.distance(p) <= self.radius + near && layout.distance(self.segment, p) <= near
     }
 }
 
 /// The segments round a face; no point of one is farther from its middle than half its length.
-fn rim(layout: &Layout, around: &BTreeSet<usize>) -> Vec<Rim> {
-    let of = |k: &usize| Rim { segment: *k, center: layout.point(*k, 0.5), radius: 0.5 * layout.length(*k) };
+fn rim(layout: &Layout, around: &BTreeSet<usize>) -> Vec<RimSegment> {
+    let of = |k: &usize| RimSegment { segment: *k, center: layout.point(*k, 0.5), radius: 0.5 * layout.length(*k) };
     around.iter().map(of).collect()
 }
 
@@ -89,7 +89,7 @@ pub(crate) fn on(nearest: &Nearest, patch: &Patch, p: DVec3, tolerance: &Toleran
     if found.distance > tolerance.point || surface.domain() == Domain::Loop {
         return found.distance <= tolerance.point;
     }
-    foot_within((surface, None), p, found.uv, patch.u, patch.v).0 <= tolerance.point
+    foot_within(surface.evaluator(), p, found.uv, patch.u, patch.v).0 <= tolerance.point
 }
 
 /// (u, v) of points in a row on a patch, near enough to each other that the foot of one leads to the next; beyond 0…1 where
@@ -103,13 +103,13 @@ pub fn trace(surface: &Surface, patch: &Patch, points: &[DVec3]) -> Vec<(f64, f6
     let (u, v) = if trimmed { (turns(surface.closed().0), turns(surface.closed().1)) } else { (patch.u, patch.v) };
     let middle = points.len() / 2;
     let first = Nearest::new(surface).at(points[middle]).uv;
-    let first = if trimmed { unwrapped(surface, first) } else { foot_within((surface, None), points[middle], first, u, v).1 };
+    let first = if trimmed { unwrapped(surface, first) } else { foot_within(surface.evaluator(), points[middle], first, u, v).1 };
     let mut places = vec![first; points.len()];
     for k in (0..middle).rev() {
-        places[k] = foot_within((surface, None), points[k], places[k + 1], u, v).1;
+        places[k] = foot_within(surface.evaluator(), points[k], places[k + 1], u, v).1;
     }
     for k in middle + 1..points.len() {
-        places[k] = foot_within((surface, None), points[k], places[k - 1], u, v).1;
+        places[k] = foot_within(surface.evaluator(), points[k], places[k - 1], u, v).1;
     }
     places
 }
@@ -159,7 +159,7 @@ pub fn crossings(input: &Input, patches: &[PatchId], track: &Track) -> Vec<f64> 
         for (along, walls) in [us, vs].into_iter().enumerate() {
             for wall in walls {
                 let wall = Wall { at: wall, near: 2.0 * input.tolerance.point };
-                // The last sample truly on one side of the line; those on it say nothing.
+                // The last sample truly on one side of the line; those on it do not count.
                 let mut last: Option<(usize, f64)> = None;
                 for (k, place) in feet.iter().enumerate() {
                     let Some(place) = place else {

@@ -8,12 +8,12 @@ use crate::surface::Domain;
 /// What is wrong, in a sentence.
 type Checked = Result<(), String>;
 
-/// Share of the tolerance within which two stretches between the same junctions are one for certain.
-const ONE: f64 = 0.1;
+/// Share of the tolerance within which two segments between the same junctions count as one.
+const MAX_SAME_SHARE: f64 = 0.1;
 
 impl Layout {
-    /// Each stretch is there once and runs along the track that gives its geometry; the stretches of a track follow each other from its
-    /// start to its end; those of a side of a face do, and sides end where the next one starts; faces use each stretch as often
+    /// Each segment is there once and runs along the track that gives its geometry; the segments of a track follow each other from its
+    /// start to its end; those of a side of a face do, and sides end where the next one starts; faces use each segment as often
     /// as the edges that it lies on say; whatever is named by a number is there.
     pub fn check(&self, input: &Input) -> Checked {
         self.check_tracks()?;
@@ -73,7 +73,7 @@ impl Layout {
         Ok(())
     }
 
-    /// No two stretches between the same junctions lie on each other, of tracks that are one where they are within the tolerance.
+    /// No two segments between the same junctions lie on each other, of tracks that are one where they are within the tolerance.
     fn check_once(&self, tolerance: f64) -> Checked {
         let segments = &self.pieces.segments;
         let ends = |k: usize| (segments[k].ends.0.min(segments[k].ends.1), segments[k].ends.0.max(segments[k].ends.1));
@@ -81,7 +81,8 @@ impl Layout {
         order.sort_by_key(|k| (ends(*k), *k));
         for same in order.chunk_by(|a, b| ends(*a) == ends(*b)) {
             for (n, b) in same.iter().enumerate() {
-                let lies = |a: &&usize| [0.25, 0.5, 0.75].iter().all(|f| self.distance(**a, self.point(*b, *f)) <= ONE * tolerance);
+                let lies =
+                    |a: &&usize| [0.25, 0.5, 0.75].iter().all(|f| self.distance(**a, self.point(*b, *f)) <= MAX_SAME_SHARE * tolerance);
                 if let Some(a) = same[..n].iter().find(lies) {
                     return Err(format!("stretches {a} and {b} are one"));
                 }
@@ -171,7 +172,7 @@ impl Layout {
         Ok(())
     }
 
-    /// Sides of faces run along a stretch as often as the edges on it have sides among these faces.
+    /// Sides of faces run along a segment as often as the edges on it have sides among these faces.
     fn check_users(&self, input: &Input) -> Checked {
         let mut counts = vec![0_i64; self.pieces.segments.len()];
         self.faces.iter().flat_map(|f| &f.sides).flat_map(|s| &s.uses).for_each(|u| counts[u.segment] += 1);

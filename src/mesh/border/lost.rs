@@ -1,5 +1,5 @@
 //! What is in a model but not in its mesh, because it is no larger than what is glued: holes, curves and whole faces that became
-//! points or lines. Each is told, for the mesh has other parts or another area than the model.
+//! points or lines. Each is reported, for the mesh has other parts or another area than the model.
 
 use glam::DVec3;
 

@@ -108,7 +108,7 @@ impl Nodes {
 }
 
 /// Side nodes of a face with their lengths along the side.
-pub struct Line {
+pub struct SideNodes {
     /// Nodes.
     pub ids: Vec<u32>,
     /// Arc length from the side's start, model units.
@@ -116,7 +116,7 @@ pub struct Line {
 }
 
 /// The nodes along a side, ascending; a pole gives `steps + 1` times its node.
-pub fn line(layout: &Layout, nodes: &Nodes, face: &Face, side: usize, steps: usize) -> Line {
+pub fn line(layout: &Layout, nodes: &Nodes, face: &Face, side: usize, steps: usize) -> SideNodes {
     let border = &face.sides[side];
     let (mut ids, mut lengths) = (Vec::new(), Vec::new());
     for u in &border.uses {
@@ -132,5 +132,5 @@ pub fn line(layout: &Layout, nodes: &Nodes, face: &Face, side: usize, steps: usi
     if border.uses.is_empty() {
         ids = vec![border.pole.map_or(0, |p| nodes.of_junction(p)); steps + 1];
     }
-    Line { ids, lengths }
+    SideNodes { ids, lengths }
 }

@@ -10,7 +10,7 @@ use crate::mesh::border::layout::{Face, FaceSide, Layout};
 use crate::mesh::request::input::Input;
 use crate::mesh::request::methods::{Elements, Method};
 use crate::mesh::request::plan::{GroupRequest, Place, Plan, Refine, Rule, Target};
-use crate::mesh::size::sizing::links_of;
+use crate::mesh::size::rule_lines::links_of;
 use crate::model::{PatchId, SurfaceId};
 use crate::network::Chain;
 

@@ -1,17 +1,16 @@
-//! A surface as chart_surface: its parameters sheared and stretched so that lengths in the chart are those in space on average.
+//! The chart of a surface: its parameters sheared and scaled so that lengths in the chart are those in space on average.
 
 use glam::{DVec2, DVec3};
 
 use crate::base::tolerance::EPSILON;
 use crate::mesh::chart::parametric_surface::{Near, ParametricSurface, Spot};
-use crate::surface::core::power_form::PowerForm;
-use crate::surface::{Domain, Jet2, Surface};
+use crate::surface::core::evaluator::PreparedSurface;
+use crate::surface::{Domain, Evaluator, Jet2, Surface};
 
 /// A surface under a chart (x, y) = (a u + b v, c v).
 #[derive(Clone, Debug)]
 pub struct Chart {
-    surface: Surface,
-    quick: Option<PowerForm>,
+    surface: PreparedSurface,
     domain: Domain,
     /// Directions in which borders may run over the seam.
     closed: (bool, bool),
@@ -40,8 +39,7 @@ impl Chart {
         // Parameters that run together are not sheared apart.
         let c = if rest > EPSILON * g { rest.sqrt() } else { g.sqrt() };
         (a.is_finite() && c.is_finite() && a > 0.0 && c > 0.0).then(|| Self {
-            surface: surface.clone(),
-            quick: surface.power_form(),
+            surface: surface.prepared(),
             domain: surface.ground(),
             closed: if surface.domain() == Domain::Loop { surface.closed() } else { (false, false) },
             a,
@@ -59,23 +57,23 @@ impl Chart {
 
     /// The surface.
     pub fn surface(&self) -> &Surface {
-        &self.surface
+        self.surface.surface()
     }
 
-    /// The surface made ready for many evaluations, where it can be.
-    pub fn power_form(&self) -> Option<&PowerForm> {
-        self.quick.as_ref()
+    /// The surface for many evaluations.
+    pub fn evaluator(&self) -> Evaluator<'_> {
+        self.surface.evaluator()
     }
 
     /// Point, ∂/∂u and ∂/∂v.
     pub fn tangents(&self, (u, v): (f64, f64)) -> [DVec3; 3] {
-        self.surface.tangents_by(self.power_form(), u, v)
+        self.evaluator().tangents(u, v)
     }
 
     /// Point and all derivatives by u and v at a place of the chart.
     pub fn jet(&self, xy: DVec2) -> Jet2 {
         let (u, v) = self.uv(xy);
-        self.surface.jet_by(self.power_form(), u, v)
+        self.evaluator().jet(u, v)
     }
 
     /// The place of surface parameters in the chart.
@@ -103,7 +101,7 @@ impl ParametricSurface for Chart {
 
     fn point(&self, xy: DVec2) -> DVec3 {
         let (u, v) = self.uv(xy);
-        self.surface.point_by(self.power_form(), u, v)
+        self.evaluator().point(u, v)
     }
 
     fn clamp(&self, xy: DVec2) -> DVec2 {

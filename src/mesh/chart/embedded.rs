@@ -13,26 +13,26 @@ use crate::mesh::chart::face_input::FaceInput;
 const BETWEEN: usize = 8;
 
 /// Adds lines and points of a face to its border; `known` are the places of each node.
-pub fn add(made: &FaceInput, face: &Face, border: &mut FaceBorder, known: &mut BTreeMap<u32, Vec<u32>>) {
-    let surface = &made.input.model.surfaces[face.surface.index()].surface;
-    let patch = &made.input.model.patches[face.patch.index()];
+pub fn add(context: &FaceInput, face: &Face, border: &mut FaceBorder, known: &mut BTreeMap<u32, Vec<u32>>) {
+    let surface = &context.input.model.surfaces[face.surface.index()].surface;
+    let patch = &context.input.model.patches[face.patch.index()];
     for &line in &face.lines {
-        let ids = made.nodes.of_segment(made.layout, line, false);
-        let at = made.nodes.fractions(line, false);
+        let ids = context.nodes.of_segment(context.layout, line, false);
+        let at = context.nodes.fractions(line, false);
         let mut points: Vec<DVec3> = Vec::with_capacity(BETWEEN * at.len());
         for (k, w) in at.windows(2).enumerate() {
-            points.push(made.points[ids[k] as usize]);
-            let between = |i: usize| made.layout.point(line, w[0] + (w[1] - w[0]) * i as f64 / BETWEEN as f64);
+            points.push(context.points[ids[k] as usize]);
+            let between = |i: usize| context.layout.point(line, w[0] + (w[1] - w[0]) * i as f64 / BETWEEN as f64);
             points.extend((1..BETWEEN).map(between));
         }
-        points.push(made.points[ids[ids.len() - 1] as usize]);
+        points.push(context.points[ids[ids.len() - 1] as usize]);
         let places = trace(surface, patch, &points);
         let nodes: Vec<u32> = ids.iter().enumerate().map(|(k, id)| border.inner(known, *id, places[k * BETWEEN])).collect();
         border.lines.extend(nodes.windows(2).filter(|w| w[0] != w[1]).map(|w| [w[0], w[1]]));
     }
     for &point in &face.points {
-        let at = trace(surface, patch, &[made.input.plan.points[point]]);
-        border.inner(known, made.nodes.points[point], at[0]);
+        let at = trace(surface, patch, &[context.input.plan.points[point]]);
+        border.inner(known, context.nodes.points[point], at[0]);
     }
 }
 

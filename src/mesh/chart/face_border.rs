@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 
 use crate::base::tolerance::NUDGE;
-use crate::mesh::border::layout::{Face, side_parameters};
+use crate::mesh::border::layout::Face;
 use crate::mesh::border::nodes::line as line_of;
+use crate::mesh::border::side_parameters::side_parameters;
 use crate::mesh::chart::affine::Chart;
 use crate::mesh::chart::embedded;
 use crate::mesh::chart::face_input::FaceInput;
@@ -17,7 +18,7 @@ pub(crate) const ONE_PLACE: f64 = NUDGE;
 
 /// Ends of two borders of one face that became one junction lie within this many glue distances of each other in the chart,
 /// whose lengths are right on average only.
-const ROOM: f64 = 8.0;
+const MAX_GLUE_DISTANCES: f64 = 8.0;
 
 /// Nodes of a border with their places, in order of first use.
 #[derive(Default)]
@@ -52,7 +53,7 @@ impl FaceBorder {
         let mut into: Vec<u32> = (0..self.ids.len() as u32).collect();
         for n in 0..self.ids.len() {
             let here = chart.xy(self.uv[n]);
-            let first = (0..n).find(|m| self.ids[*m] == self.ids[n] && chart.xy(self.uv[*m]).distance(here) <= ROOM * near);
+            let first = (0..n).find(|m| self.ids[*m] == self.ids[n] && chart.xy(self.uv[*m]).distance(here) <= MAX_GLUE_DISTANCES * near);
             into[n] = first.map_or(into[n], |m| into[m]);
         }
         let kept: Vec<usize> = (0..into.len()).filter(|n| into[*n] == *n as u32).collect();
@@ -65,16 +66,16 @@ impl FaceBorder {
 }
 
 /// The nodes round a face, loop by loop, with their places on the surface.
-pub(crate) fn border(made: &FaceInput, face: &Face) -> FaceBorder {
-    let record = &made.input.model.patches[face.patch.index()];
-    let surface = &made.input.model.surfaces[face.surface.index()].surface;
+pub(crate) fn border(context: &FaceInput, face: &Face) -> FaceBorder {
+    let record = &context.input.model.patches[face.patch.index()];
+    let surface = &context.input.model.surfaces[face.surface.index()].surface;
     let mut border = FaceBorder::default();
     let mut known: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
     // First and last node of each side, loops apart.
     let mut ends: Vec<Option<(u32, u32)>> = Vec::new();
     for (k, side) in face.sides.iter().enumerate() {
         ends.push(None);
-        let line = line_of(made.layout, made.nodes, face, k, 1);
+        let line = line_of(context.layout, context.nodes, face, k, 1);
         let uv = if side.uses.is_empty() {
             match surface.border_line(k) {
                 Some((a, b)) => vec![a, b],
@@ -83,11 +84,11 @@ pub(crate) fn border(made: &FaceInput, face: &Face) -> FaceBorder {
                 None => pole(record, k),
             }
         } else {
-            let feet = line.ids.iter().map(|n| surface.flat_uv(made.points[*n as usize])).collect::<Option<Vec<_>>>();
-            feet.unwrap_or_else(|| places(made.input, face, k, &line.lengths))
+            let feet = line.ids.iter().map(|n| surface.flat_uv(context.points[*n as usize])).collect::<Option<Vec<_>>>();
+            feet.unwrap_or_else(|| places(context.input, face, k, &line.lengths))
         };
         // Edges have the face on their left; sides of a mapped domain run with ascending u or v.
-        let back = made.input.model.runs_back(record, k);
+        let back = context.input.model.runs_back(record, k);
         let mut last: Option<u32> = None;
         for (id, at) in line.ids.iter().zip(uv) {
             // A node may be in several places of the chart (a seam, a pole), but in each of them once.
@@ -112,7 +113,7 @@ pub(crate) fn border(made: &FaceInput, face: &Face) -> FaceBorder {
     if surface.domain() == Domain::Loop {
         border.jump(&surface.loops(), &ends);
     }
-    embedded::add(made, face, &mut border, &mut known);
+    embedded::add(context, face, &mut border, &mut known);
     border
 }
 

@@ -22,23 +22,23 @@ pub struct FaceInput<'a> {
     pub nodes: &'a Nodes,
     /// Points of all border nodes.
     pub points: &'a [DVec3],
-    /// What `near`, `in` and `min_size` ask for.
+    /// Sizes requested by `near`, `in` and `min_size`.
     pub wanted: &'a SizeRequests,
 }
 
 /// The border of a face, its chart, and the border in it; `None` where the surface is singular all along it.
-pub(crate) fn outlined(made: &FaceInput, face: &Face) -> Option<(FaceBorder, Chart, Outline)> {
-    let surface = &made.input.model.surfaces[face.surface.index()].surface;
-    // Made ready once for the border and the chart.
-    let _ready = surface.power_form();
-    let mut border = border(made, face);
+pub(crate) fn outlined(context: &FaceInput, face: &Face) -> Option<(FaceBorder, Chart, Outline)> {
+    let surface = &context.input.model.surfaces[face.surface.index()].surface;
+    // Converted once for the border and the chart.
+    let _power_form = surface.power_form();
+    let mut border = border(context, face);
     let chart = Chart::new(surface, border.uv.iter().copied())?;
-    if face.near > made.input.tolerance.point {
+    if face.near > context.input.tolerance.point {
         border.close(&chart, face.near);
     }
     let outline = Outline {
         xy: border.uv.iter().map(|uv| chart.xy(*uv)).collect(),
-        p: border.ids.iter().map(|n| made.points[*n as usize]).collect(),
+        p: border.ids.iter().map(|n| context.points[*n as usize]).collect(),
         loops: border.edges.clone(),
         lines: border.lines.clone(),
     };
@@ -46,8 +46,8 @@ pub(crate) fn outlined(made: &FaceInput, face: &Face) -> Option<(FaceBorder, Cha
 }
 
 /// A face of these places and elements, with the ids of the border nodes.
-pub(crate) fn prepared(made: &FaceInput, face: &Face, free: Free, mut ids: Vec<u32>, inside: FreeInside) -> FaceMesh {
-    let surface = &made.input.model.surfaces[face.surface.index()].surface;
+pub(crate) fn prepared(context: &FaceInput, face: &Face, free: Free, mut ids: Vec<u32>, inside: FreeInside) -> FaceMesh {
+    let surface = &context.input.model.surfaces[face.surface.index()].surface;
     let (triangles, quads) = (free.triangles.len() as u64, free.quads.len() as u64);
     ids.resize(free.uv.len(), 0);
     FaceMesh {
@@ -63,6 +63,6 @@ pub(crate) fn prepared(made: &FaceInput, face: &Face, free: Free, mut ids: Vec<u
 }
 
 /// A face without anything in it, for as long as only its border matters.
-pub fn empty(made: &FaceInput, face: &Face) -> FaceMesh {
-    prepared(made, face, Free::default(), Vec::new(), FreeInside::default())
+pub fn empty(context: &FaceInput, face: &Face) -> FaceMesh {
+    prepared(context, face, Free::default(), Vec::new(), FreeInside::default())
 }

@@ -7,9 +7,9 @@ use crate::mesh::chart::halves::Halves;
 use crate::mesh::chart::outline::Outline;
 
 /// Every second node of each segment, ascending. Where a count is odd one step in the middle stands alone.
-pub(crate) fn odd(made: &FaceInput, face: &Face) -> Vec<u32> {
+pub(crate) fn odd(context: &FaceInput, face: &Face) -> Vec<u32> {
     let odd = |segment| {
-        let ids = made.nodes.of_segment(made.layout, segment, false);
+        let ids = context.nodes.of_segment(context.layout, segment, false);
         let steps = ids.len() - 1;
         // Steps before the one alone.
         let before = if steps % 2 == 1 { 2 * (steps / 4) } else { steps };
@@ -22,7 +22,7 @@ pub(crate) fn odd(made: &FaceInput, face: &Face) -> Vec<u32> {
 }
 
 /// The border of the cells: every second node of each segment, corners among them.
-pub(crate) fn halved(made: &FaceInput, face: &Face, border: &FaceBorder, outline: &Outline) -> Option<Halves> {
-    let middles = odd(made, face);
+pub(crate) fn halved(context: &FaceInput, face: &Face, border: &FaceBorder, outline: &Outline) -> Option<Halves> {
+    let middles = odd(context, face);
     Halves::new(outline, &border.ids, |n| middles.binary_search(&border.ids[n as usize]).is_ok())
 }

@@ -35,7 +35,7 @@ impl Halves {
         }
     }
 
-    /// Two edges at a time; `middle` tells the places of nodes that are in the middle of two, `ids` are numbers in the mesh.
+    /// Two edges at a time; `middle` gives the places of nodes that are in the middle of two, `ids` are numbers in the mesh.
     ///
     /// `None` where edges at a middle node do not follow each other.
     pub fn new(outline: &Outline, ids: &[u32], middle: impl Fn(u32) -> bool) -> Option<Self> {

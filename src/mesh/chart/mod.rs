@@ -1,4 +1,4 @@
-//! A face made freely in the plane: its parameters sheared so that lengths are those in space on average, and its border there.
+//! A face meshed freely in the plane: its parameters sheared so that lengths are those in space on average, and its border there.
 
 pub mod affine;
 pub mod embedded;

@@ -1,4 +1,4 @@
-//! What the free mesher asks of a surface and of a size: nothing else is known here.
+//! What the free mesher evaluates of a surface and of a size: nothing else is known here.
 
 use glam::{DVec2, DVec3};
 
@@ -117,7 +117,7 @@ pub fn foot_near(chart_surface: &dyn ParametricSurface, guess: DVec2, wanted: DV
     if off > AMISS * AMISS * step * step { foot_spot(chart_surface, guess, wanted) } else { (guess, spot) }
 }
 
-/// Share of a step by which a guess of its end may be amiss.
+/// Share of a step by which a guess of its end may be off.
 const AMISS: f64 = 0.1;
 /// Share of a step that may be missing at its end.
 const FOOT: f64 = 0.02;

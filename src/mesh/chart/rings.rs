@@ -12,24 +12,29 @@ use crate::mesh::chart::face_input::FaceInput;
 use crate::mesh::chart::outline::Outline;
 use crate::surface::Surface;
 
-/// Nodes of a ring, at least and at most.
-const RING: (f64, f64) = (3.0, 5.0);
-/// Steps of the seam all round the face from which on elements go round it by themselves.
-const WIDE: f64 = 5.0;
-/// Pieces of a way round a face by which it is measured.
-const PIECES: u32 = 16;
+/// What steers rings.
+struct RingSettings {
+    /// Nodes of a ring, at least and at most.
+    nodes: (f64, f64),
+    /// Steps of the seam all round the face from which on elements go round it by themselves.
+    max_steps_round: f64,
+    /// Pieces of a way round a face by which it is measured.
+    pieces: u32,
+}
+
+const SETTINGS: RingSettings = RingSettings { nodes: (3.0, 5.0), max_steps_round: 5.0, pieces: 16 };
 
 /// Length of the way over a surface that is straight in (u, v).
 pub(crate) fn way_round(surface: &Surface, from: (f64, f64), to: (f64, f64)) -> f64 {
     let at = |k: u32| {
-        let (u, v) = DVec2::from(from).lerp(DVec2::from(to), f64::from(k) / f64::from(PIECES)).into();
+        let (u, v) = DVec2::from(from).lerp(DVec2::from(to), f64::from(k) / f64::from(SETTINGS.pieces)).into();
         surface.point(u, v)
     };
-    (0..PIECES).map(|k| at(k).distance(at(k + 1))).sum()
+    (0..SETTINGS.pieces).map(|k| at(k).distance(at(k + 1))).sum()
 }
 
 /// Adds rings where the face has one seam.
-pub(crate) fn add_rings(made: &FaceInput, face: &Face, border: &FaceBorder, (chart, outline): (&Chart, &mut Outline)) {
+pub(crate) fn add_rings(context: &FaceInput, face: &Face, border: &FaceBorder, chart: &Chart, outline: &mut Outline) {
     let mut places: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
     border.ids.iter().zip(0..).for_each(|(id, n)| places.entry(*id).or_default().push(n));
     // What turns back along itself has no way round.
@@ -56,13 +61,13 @@ pub(crate) fn add_rings(made: &FaceInput, face: &Face, border: &FaceBorder, (cha
         if (from.1 - to.1).abs() > ONE_PLACE {
             continue;
         }
-        let here = made.points[id(s) as usize];
-        let step = beside[s as usize].iter().map(|o| made.points[id(*o) as usize].distance(here)).fold(0.0, f64::max);
+        let here = context.points[id(s) as usize];
+        let step = beside[s as usize].iter().map(|o| context.points[id(*o) as usize].distance(here)).fold(0.0, f64::max);
         let round = way_round(surface, from, to);
-        if round >= WIDE * step {
+        if round >= SETTINGS.max_steps_round * step {
             continue;
         }
-        let n = (round / step).round().clamp(RING.0, RING.1) as u32;
+        let n = (round / step).round().clamp(SETTINGS.nodes.0, SETTINGS.nodes.1) as u32;
         let mut last = s;
         for k in 1..n {
             // On one line to the last digit, or three of them could be a triangle in space that is none in the chart.

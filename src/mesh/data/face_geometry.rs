@@ -77,7 +77,7 @@ impl FaceNodes {
         lists.into_iter().flatten().for_each(|id| *id += by);
     }
 
-    /// (u, v) of the nodes in a list; none of a grid, whose rows and columns tell.
+    /// (u, v) of the nodes in a list; none of a grid, where rows and columns give them.
     pub fn listed_uv(&self) -> Vec<(f64, f64)> {
         match self {
             Self::Grid(..) => Vec::new(),

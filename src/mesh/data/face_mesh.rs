@@ -1,10 +1,11 @@
-//! Faces ready to be filled: their geometries, the ids of their border nodes, and how many nodes and elements they make.
+//! Faces before their elements: their geometries, the ids of their border nodes, and how many nodes and elements they make.
 
 use std::ops::Range;
 
 use glam::DVec3;
 
 use crate::mesh::data::face_geometry::{FaceGeometry, FaceNodes};
+use crate::mesh::mapped::diagonals::diagonals;
 use crate::mesh::mapped::grid;
 use crate::mesh::mapped::trilateral::LatticeIds;
 use crate::mesh::request::decider::{Decider, Tally};
@@ -12,7 +13,7 @@ use crate::mesh::request::methods::Elements;
 use crate::model::SurfaceId;
 use crate::surface::Surface;
 
-/// A face ready to be filled.
+/// A face before its elements are filled in.
 #[derive(Clone, Debug)]
 pub struct FaceMesh {
     /// The surface.
@@ -42,7 +43,7 @@ pub struct FreeInside {
     pub loops: Vec<[u32; 2]>,
     /// What decided the sizes inside.
     pub deciders: Vec<Decider>,
-    /// Its cells between lines of constant u and v, where it was made of such.
+    /// Its cells between lines of constant u and v, where it was made of these.
     pub tally: Option<Tally>,
 }
 
@@ -52,8 +53,8 @@ pub type FaceRanges = (Range<usize>, Range<usize>);
 /// The triangles and quads of each face among those of the mesh, where they follow each other face by face.
 pub fn element_ranges(prepared: &[FaceMesh]) -> Vec<FaceRanges> {
     let (mut t, mut q) = (0, 0);
-    let one = |ready: &FaceMesh| {
-        let own = (t..t + ready.triangles as usize, q..q + ready.quads as usize);
+    let one = |face: &FaceMesh| {
+        let own = (t..t + face.triangles as usize, q..q + face.quads as usize);
         (t, q) = (own.0.end, own.1.end);
         own
     };
@@ -103,7 +104,7 @@ impl FaceMesh {
     /// inner nodes, `even` the distance below which both diagonals of a cell are as good.
     pub fn diagonals(&self, surface: &Surface, node: &(dyn Fn(u32) -> DVec3 + Sync), even: f64) -> Vec<bool> {
         match &self.geometry.nodes {
-            FaceNodes::Grid(grid, frame) if self.elements == Elements::Triangles => grid::diagonals(grid, frame, surface, node, even),
+            FaceNodes::Grid(grid, frame) if self.elements == Elements::Triangles => diagonals(grid, frame, surface, node, even),
             _ => Vec::new(),
         }
     }

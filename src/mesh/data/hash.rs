@@ -25,13 +25,13 @@ fn of_group(group: &Group) -> u64 {
 
 /// What a cell is made of: corner nodes first, then mid nodes; which kind.
 #[derive(Clone, Copy)]
-struct Cell<'a> {
+struct HashedElement<'a> {
     kind: u64,
     corners: &'a [u32],
     mids: &'a [u32],
 }
 
-impl Cell<'_> {
+impl HashedElement<'_> {
     /// The colours round the cell, as seen from corner `from`.
     fn seen_from(&self, from: usize, colours: &[u64]) -> u64 {
         let n = self.corners.len();
@@ -93,20 +93,20 @@ impl Mesh {
         all.for_each(|k| tags[k] = tags[k].wrapping_add(mix(7, number)));
     }
 
-    fn each_cell(&self, mut visit: impl FnMut(usize, Cell)) {
+    fn each_cell(&self, mut visit: impl FnMut(usize, HashedElement)) {
         let none: &[u32] = &[];
         let mut k = 0;
         for (n, corners) in job::looking(self.lines.iter().enumerate()) {
             let mids = self.line_mids.get(n).map_or(none, std::slice::from_ref);
-            visit(k, Cell { kind: 2, corners, mids });
+            visit(k, HashedElement { kind: 2, corners, mids });
             k += 1;
         }
         for (n, corners) in job::looking(self.triangles.iter().enumerate()) {
-            visit(k, Cell { kind: 3, corners, mids: self.triangle_mids.get(n).map_or(none, |m| m) });
+            visit(k, HashedElement { kind: 3, corners, mids: self.triangle_mids.get(n).map_or(none, |m| m) });
             k += 1;
         }
         for (n, corners) in job::looking(self.quads.iter().enumerate()) {
-            visit(k, Cell { kind: 4, corners, mids: self.quad_mids.get(n).map_or(none, |m| m) });
+            visit(k, HashedElement { kind: 4, corners, mids: self.quad_mids.get(n).map_or(none, |m| m) });
             k += 1;
         }
     }

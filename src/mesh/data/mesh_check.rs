@@ -1,5 +1,5 @@
-//! What a sound mesh is, as far as its arrays tell: of every mesh, whether it was made, taken from a store or read from a file.
-//! What its faces ask of their elements is told by `verify::face_check`, which looks at every face when it is made.
+//! What a sound mesh is, as far as its arrays show: of every mesh, whether it was made, loaded from a store or read from a file.
+//! Conditions on the elements of its faces are checked by `verify::face_check`, for every face when it is made.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;

@@ -29,7 +29,7 @@ pub struct Quality {
 
 /// Sums over some elements; joined in order, so that the bits do not depend on threads.
 #[derive(Clone, Copy)]
-struct Tally {
+struct QualityTally {
     /// Cosine of the smallest angle so far, and of the largest.
     cosines: (f64, f64),
     quality: (f64, f64),
@@ -37,7 +37,7 @@ struct Tally {
     area: f64,
 }
 
-impl Tally {
+impl QualityTally {
     const NONE: Self = Self { cosines: (-1.0, 1.0), quality: (0.0, f64::INFINITY), aspect: 1.0, area: 0.0 };
 
     fn with(self, other: Self) -> Self {
@@ -108,7 +108,7 @@ pub fn least_angle(corners: &[DVec3], split: bool) -> f64 {
 
 /// Quality of one triangle or quad by its corners, as [`Quality::mean_quality`] counts it; 0 for anything else.
 pub fn of_element(corners: &[DVec3]) -> f64 {
-    let mut tally = Tally::NONE;
+    let mut tally = QualityTally::NONE;
     match *corners {
         [a, b, c] => tally.triangle([a, b, c]),
         [a, b, c, d] => tally.quad([a, b, c, d]),
@@ -126,16 +126,16 @@ impl Mesh {
         }
         let node = |n: u32| self.nodes[n as usize];
         let triangles = par::map(self.triangles.len().div_ceil(BATCH), |batch| {
-            let mut tally = Tally::NONE;
+            let mut tally = QualityTally::NONE;
             self.triangles[batch * BATCH..].iter().take(BATCH).for_each(|t| tally.triangle(t.map(node)));
             tally
         });
         let quads = par::map(self.quads.len().div_ceil(BATCH), |batch| {
-            let mut tally = Tally::NONE;
+            let mut tally = QualityTally::NONE;
             self.quads[batch * BATCH..].iter().take(BATCH).for_each(|q| tally.quad(q.map(node)));
             tally
         });
-        let all = triangles.into_iter().chain(quads).fold(Tally::NONE, Tally::with);
+        let all = triangles.into_iter().chain(quads).fold(QualityTally::NONE, QualityTally::with);
         Some(Quality {
             min_angle: math::acos(all.cosines.0),
             max_angle: math::acos(all.cosines.1),

@@ -31,7 +31,7 @@ fn edge(a: u32, b: u32) -> Edge {
 ///
 /// Nodes nearer to the plane than `rounding` lie in it. Points nearer to the one before than `least` are left out, and
 /// rows that are no longer. Elements of order 2 count with the straight lines between all their nodes.
-pub fn section(mesh: &Mesh, (at, normal): (DVec3, DVec3), rounding: f64, least: f64) -> Vec<Row> {
+pub fn section(mesh: &Mesh, at: DVec3, normal: DVec3, rounding: f64, least: f64) -> Vec<Row> {
     let heights: Vec<f64> = mesh.nodes.iter().map(|p| (*p - at).dot(normal)).map(|h| if h.abs() <= rounding { 0.0 } else { h }).collect();
     let above = |n: u32| heights[n as usize] >= 0.0;
     let mut segments: Vec<(Edge, Edge)> = Vec::new();
@@ -160,7 +160,7 @@ mod tests {
     }
 
     fn cut(mesh: &Mesh, at: DVec3, normal: DVec3) -> Vec<Row> {
-        section(mesh, (at, normal.normalize()), 1e-12, 1e-9)
+        section(mesh, at, normal.normalize(), 1e-12, 1e-9)
     }
 
     #[test]

@@ -17,27 +17,50 @@ use crate::mesh::request::limits::Limits;
 use crate::mesh::request::sources::distance_to_segment;
 use crate::model::Track;
 
-/// Halvings of a step's control polygon; each brings the bound four times closer to the truth.
-const HALVINGS: u32 = 4;
-/// Points inside a step where no control polygon is known.
-const PROBES: u32 = 8;
+/// What steers the search for the least number of steps.
+struct StepSettings {
+    /// Counts up to which all are tried.
+    max_tried_from_one: u32,
+    /// Counts up to which those from the half on are tried; of larger ones the least is found to within what one step more changes.
+    max_tried_from_half: u32,
+    /// A count grows by no more than this factor at a time: steps longer than bends seem to need more than they do.
+    max_growth: f64,
+    /// Halvings of a step's control polygon; each brings the bound four times closer to the truth.
+    halvings: u32,
+    /// Points inside a step where no control polygon is known.
+    probes: u32,
+    /// Share of a step within which curves without an exact NURBS form are converted for their bound.
+    conversion: f64,
+    /// Work of bounding one step, in evaluations of a curve.
+    work: u64,
+}
+
+const SETTINGS: StepSettings = StepSettings {
+    max_tried_from_one: 32,
+    max_tried_from_half: 4096,
+    max_growth: 2.0,
+    halvings: 4,
+    probes: 8,
+    conversion: 1.0 / 16_384.0,
+    work: 8,
+};
 
 /// How far the worst step of a division is from its limits: 1 is just kept, the square law applies to `chord`.
 #[derive(Clone, Copy, Debug)]
-struct LimitRatio {
+struct StepRatio {
     chord: f64,
     angle: f64,
 }
 
-/// The least number of steps for the limits, up to `cap`: so many are not looked at any more.
+/// The least number of steps for the limits, up to `cap`: more are not tried.
 ///
 /// `divided` gives the fractions 0…1 of so many steps. Counts below half of one that does are not the least in any but odd cases;
-/// from there on each is tried, so that a looser limit never asks for more.
+/// from there on each is tried, so that a looser limit never gives more.
 pub fn least_steps(layout: &Layout, segment: usize, divided: &dyn Fn(u32) -> Vec<f64>, limits: &Limits, cap: u32) -> Result<u32> {
     if limits.chord.is_none() && limits.angle.is_none() {
         return Ok(1);
     }
-    let line = Line { layout, segment, limits };
+    let line = LimitedSegment { layout, segment, limits };
     let mut worst = Vec::new();
     let (mut low, mut n) = (0_u32, 1_u32);
     loop {
@@ -48,14 +71,14 @@ pub fn least_steps(layout: &Layout, segment: usize, divided: &dyn Fn(u32) -> Vec
         worst.push(step.at);
         // Deviation falls with the square of the step, turns with the step, once steps are shorter than bends.
         // Where a bend is sharper than any step they fall more slowly: many steps are doubled, and the least is sought between.
-        let more = if n > ONE_BY_ONE { TWICE } else { step.load.steps().min(TWICE) };
+        let more = if n > SETTINGS.max_tried_from_half { SETTINGS.max_growth } else { step.ratio.steps().min(SETTINGS.max_growth) };
         let guess = f64::from(n) * more;
         (low, n) = (n, (guess.min(f64::from(cap)) as u32).max(n + 1));
     }
-    if n > ONE_BY_ONE {
+    if n > SETTINGS.max_tried_from_half {
         return line.between(divided, (low, n), &mut worst);
     }
-    for count in if n <= FEW { 1 } else { n / 2 }..n {
+    for count in if n <= SETTINGS.max_tried_from_one { 1 } else { n / 2 }..n {
         match line.broken(&divided(count), &worst)? {
             Some(at) if worst.contains(&at) => {}
             Some(at) => worst.push(at),
@@ -65,18 +88,7 @@ pub fn least_steps(layout: &Layout, segment: usize, divided: &dyn Fn(u32) -> Vec
     Ok(n)
 }
 
-/// Counts up to which all are tried.
-const FEW: u32 = 32;
-/// Counts up to which those from the half on are tried; of larger ones the least is found to within what one step more changes.
-const ONE_BY_ONE: u32 = 4096;
-
-/// Work of looking at one step, in evaluations of a curve.
-const OF_A_STEP: u64 = 8;
-
-/// Counts grow by no more at a time: steps longer than bends seem to ask for more than they do.
-const TWICE: f64 = 2.0;
-
-impl LimitRatio {
+impl StepRatio {
     /// Steps in place of one that would keep the limits.
     fn steps(&self) -> f64 {
         self.chord.sqrt().max(self.angle)
@@ -87,19 +99,19 @@ impl LimitRatio {
 struct Broken {
     /// Fraction of its middle.
     at: f64,
-    load: LimitRatio,
+    ratio: StepRatio,
 }
 
 /// A segment under limits.
-struct Line<'a> {
+struct LimitedSegment<'a> {
     layout: &'a Layout,
     segment: usize,
     limits: &'a Limits,
 }
 
-impl Line<'_> {
+impl LimitedSegment<'_> {
     /// The least count above `low`, which does not do, up to `high`, which does, as if all between did from one on: the least
-    /// that does where others were broken, looked at whole.
+    /// that does where others were broken, checked whole.
     fn between(&self, divided: &dyn Fn(u32) -> Vec<f64>, (mut low, high): (u32, u32), worst: &mut Vec<f64>) -> Result<u32> {
         loop {
             let mut least = high;
@@ -120,38 +132,38 @@ impl Line<'_> {
         }
     }
 
-    /// The first of some places whose step breaks a limit, the last of them looked at first.
+    /// The first of some places whose step breaks a limit, tried from the last on.
     fn broken_at(&self, fractions: &[f64], places: &[f64]) -> Result<Option<f64>> {
         for place in places.iter().rev() {
-            if self.load(fractions, Self::at(fractions, *place))?.is_some() {
+            if self.ratio(fractions, Self::at(fractions, *place))?.is_some() {
                 return Ok(Some(*place));
             }
         }
         Ok(None)
     }
 
-    /// The place of a step that breaks a limit, looked for first where others did.
+    /// The place of a step that breaks a limit, searched first where others did.
     fn broken(&self, fractions: &[f64], worst: &[f64]) -> Result<Option<f64>> {
         if let Some(place) = self.broken_at(fractions, worst)? {
             return Ok(Some(place));
         }
         for k in 0..fractions.len() - 1 {
-            if self.load(fractions, k)?.is_some() {
+            if self.ratio(fractions, k)?.is_some() {
                 return Ok(Some(0.5 * (fractions[k] + fractions[k + 1])));
             }
         }
         Ok(None)
     }
 
-    /// The step that breaks a limit most, or one that asks for twice as many.
+    /// The step that breaks a limit most, or one that needs twice as many.
     fn worst(&self, fractions: &[f64], worst: &[f64]) -> Result<Option<Broken>> {
         let mut found: Option<Broken> = None;
         let first = worst.iter().rev().map(|place| Self::at(fractions, *place));
         for k in first.chain(0..fractions.len() - 1) {
-            let Some(load) = self.load(fractions, k)? else { continue };
-            if found.as_ref().is_none_or(|f| f.load.steps() < load.steps()) {
-                let enough = load.steps() >= TWICE;
-                found = Some(Broken { at: 0.5 * (fractions[k] + fractions[k + 1]), load });
+            let Some(ratio) = self.ratio(fractions, k)? else { continue };
+            if found.as_ref().is_none_or(|f| f.ratio.steps() < ratio.steps()) {
+                let enough = ratio.steps() >= SETTINGS.max_growth;
+                found = Some(Broken { at: 0.5 * (fractions[k] + fractions[k + 1]), ratio });
                 if enough {
                     break;
                 }
@@ -166,32 +178,41 @@ impl Line<'_> {
     }
 
     /// How far a step is over its limits; `None` where it keeps them.
-    fn load(&self, fractions: &[f64], k: usize) -> Result<Option<LimitRatio>> {
-        work::spend(OF_A_STEP);
+    fn ratio(&self, fractions: &[f64], k: usize) -> Result<Option<StepRatio>> {
+        work::spend(SETTINGS.work);
         let (limits, segment) = (self.limits, &self.layout.pieces.segments[self.segment]);
         let track = &self.layout.parts[segment.track].track;
         let length = segment.s.1 - segment.s.0;
         let (a, b) = (segment.s.0 + length * fractions[k], segment.s.0 + length * fractions[k + 1]);
         let steps = (fractions.len() - 1) as f64;
-        // What is kept for sure need not be known closer.
-        let most = (
-            limits.chord.map_or(f64::INFINITY, |limit| limit * (1.0 + limits.chord_room(length))),
-            limits.angle.map_or(f64::INFINITY, |limit| limit * (1.0 + limits.turn_room(length, limit * steps))),
-        );
+        // A bound that keeps the limit need not be closer.
+        let most = StepAllowance {
+            chord: limits.chord.map_or(f64::INFINITY, |limit| limit * (1.0 + limits.chord_room(length))),
+            angle: limits.angle.map_or(f64::INFINITY, |limit| limit * (1.0 + limits.turn_room(length, limit * steps))),
+            near: limits.near,
+        };
         let (chord, angle) = match track {
-            Track::Links { .. } => hull_of(track, (a, b), (track.point(a), track.point(b)), (most, limits.near))?,
+            Track::Links { .. } => hull_of(track, (a, b), (track.point(a), track.point(b)), &most)?,
             Track::Iso(_) => probed(track, a, b),
         };
         let over = |x: f64, limit: Option<f64>| limit.map_or(0.0, |limit| x / limit);
-        let load = LimitRatio { chord: over(chord, limits.chord), angle: over(angle, limits.angle) };
-        Ok((chord > most.0 || angle > most.1).then_some(load))
+        let ratio = StepRatio { chord: over(chord, limits.chord), angle: over(angle, limits.angle) };
+        Ok((chord > most.chord || angle > most.angle).then_some(ratio))
     }
 }
 
+/// What is allowed of a step: bounds up to there need not be closer to the truth.
+struct StepAllowance {
+    /// Distance from the chord, model units.
+    chord: f64,
+    /// Turn of the tangent, radians.
+    angle: f64,
+    /// A piece of another curve that is no longer, as rounding leaves at a kink, has no direction; model units.
+    near: f64,
+}
+
 /// Bounds over a step on links: distance from the chord by the convex hull, turn by the directions of the control legs [Floater 1992].
-/// Bounds up to `enough` may be rough. A piece of another curve that is no longer than `near`, as rounding leaves at a kink,
-/// has no direction.
-fn hull_of(track: &Track, (s0, s1): (f64, f64), ends: (DVec3, DVec3), (enough, near): ((f64, f64), f64)) -> Result<(f64, f64)> {
+fn hull_of(track: &Track, (s0, s1): (f64, f64), ends: (DVec3, DVec3), allowed: &StepAllowance) -> Result<(f64, f64)> {
     let Track::Links { chains, starts, span } = track else {
         return Ok((0.0, 0.0));
     };
@@ -215,14 +236,14 @@ fn hull_of(track: &Track, (s0, s1): (f64, f64), ends: (DVec3, DVec3), (enough, n
         let forward = run.s0 <= run.s1;
         let part = if forward { (run.s0 + low, run.s0 + high) } else { (run.s0 - high, run.s0 - low) };
         let pieces = pieces_of(&run.curve, part, ends.0.distance(ends.1))?;
-        if enough.1.is_finite() && high - low > near {
+        if allowed.angle.is_finite() && high - low > allowed.near {
             turning.extend(pieces.iter().map(|piece| (piece.clone(), if forward { 1.0 } else { -1.0 })));
         }
-        if enough.0.is_finite() {
-            chord = chord_of(pieces, ends, (enough.0, chord));
+        if allowed.chord.is_finite() {
+            chord = chord_of(pieces, ends, allowed.chord, chord);
         }
     }
-    Ok((chord, turn_of(turning, enough.1)))
+    Ok((chord, turn_of(turning, allowed.angle)))
 }
 
 /// Bézier pieces of a part of a curve by arc length, converted for a step with a chord of this length.
@@ -237,13 +258,13 @@ fn pieces_of(curve: &Curve, s: (f64, f64), across: f64) -> Result<Vec<Bezier>> {
     if t1 <= t0 {
         return Ok(Vec::new());
     }
-    Ok(curve.part(t0, t1).to_nurbs(&Tolerance::new(across * CONVERSION, across))?.beziers())
+    Ok(curve.part(t0, t1).to_nurbs(&Tolerance::new(across * SETTINGS.conversion, across))?.beziers())
 }
 
 /// Distance bound of pieces of a curve from a chord, closer only where it is above what is `enough` or was seen.
-fn chord_of(pieces: Vec<Bezier>, ends: (DVec3, DVec3), (enough, seen): (f64, f64)) -> f64 {
+fn chord_of(pieces: Vec<Bezier>, ends: (DVec3, DVec3), enough: f64, seen: f64) -> f64 {
     let mut chord = seen;
-    let mut open: Vec<_> = pieces.into_iter().map(|piece| (piece, HALVINGS)).collect();
+    let mut open: Vec<_> = pieces.into_iter().map(|piece| (piece, SETTINGS.halvings)).collect();
     while let Some((piece, left)) = open.pop() {
         let own = piece.poles.iter().map(|q| distance_to_segment(projected(*q), ends.0, ends.1)).fold(0.0, f64::max);
         if own > enough.max(chord) && left > 0 && piece.poles.len() > 2 {
@@ -259,7 +280,7 @@ fn chord_of(pieces: Vec<Bezier>, ends: (DVec3, DVec3), (enough, seen): (f64, f64
 /// How far tangents of pieces, each run one way or the other, are apart: tangents lie between control legs, and the first and last
 /// legs are tangents. Pieces are halved until a bound is `enough` or tangents are sure to be farther apart.
 fn turn_of(mut pieces: Vec<(Bezier, f64)>, enough: f64) -> f64 {
-    for left in (0..=HALVINGS).rev() {
+    for left in (0..=SETTINGS.halvings).rev() {
         let (mut legs, mut tangents) = (Vec::new(), Vec::new());
         for (piece, sign) in &pieces {
             let points: Vec<DVec3> = piece.poles.iter().map(|q| projected(*q)).collect();
@@ -283,15 +304,12 @@ fn halved(piece: &Bezier) -> impl Iterator<Item = Bezier> + use<> {
     [a, b].into_iter()
 }
 
-/// Share of a step within which curves without an exact NURBS form are converted for their bound.
-const CONVERSION: f64 = 1.0 / 16_384.0;
-
 /// Distance and turn at points inside a step.
 fn probed(track: &Track, s0: f64, s1: f64) -> (f64, f64) {
     let (a, b) = (track.jet(s0), track.jet(s1));
     let (mut chord, mut angle) = (0.0_f64, angle_or_zero(a.1, b.1));
-    for k in 1..PROBES {
-        let (p, tangent) = track.jet(s0 + (s1 - s0) * f64::from(k) / f64::from(PROBES));
+    for k in 1..SETTINGS.probes {
+        let (p, tangent) = track.jet(s0 + (s1 - s0) * f64::from(k) / f64::from(SETTINGS.probes));
         chord = chord.max(distance_to_segment(p, a.0, b.0));
         angle = angle.max(angle_or_zero(a.1, tangent)).max(angle_or_zero(tangent, b.1));
     }
@@ -303,6 +321,6 @@ fn angle_or_zero(a: DVec3, b: DVec3) -> f64 {
 }
 
 /// The wanted number of steps for a size, of a length that may be longer by `near`.
-pub fn wanted_steps((length, near): (f64, f64), size: f64, bias: f64, cap: u32) -> u32 {
+pub fn wanted_steps(length: f64, near: f64, size: f64, bias: f64, cap: u32) -> u32 {
     for_size((length - near).max(0.0), size, bias).min(f64::from(cap)) as u32
 }

@@ -11,19 +11,24 @@ use crate::base::par;
 use crate::base::tolerance::Tolerance;
 use crate::mesh::data::face_geometry::{FaceGeometry, FaceNodes};
 use crate::mesh::deviation::poles::from_pole;
-use crate::mesh::deviation::triangle::stationary;
+use crate::mesh::deviation::quadratic::stationary;
 use crate::mesh::mapped::grid::{Grid, triangle_rows};
-use crate::surface::core::power_form::PowerForm;
-use crate::surface::{Domain, Surface, foot_within, step};
+use crate::surface::{Domain, Evaluator, Surface, foot_within, step};
 
 /// Divisions of a triangle's side.
 const SIX: usize = 6;
-/// Share of what a triangle seems to be off that it is at least, where it does not only seem so.
-const MIN_TRUE_SHARE: f64 = 0.5;
-/// Triangles that one thread measures at a time.
-const BATCH: usize = 1024;
-/// Triangles of a row that are followed at most, but for those that only seem far.
-const FOLLOWED: usize = 256;
+
+/// What steers the measurement.
+struct MeasureSettings {
+    /// Distance over what a triangle seems to be off, from which it does not only seem so.
+    min_true_share: f64,
+    /// Triangles that one thread measures at a time.
+    batch: usize,
+    /// Triangles of a row that are followed to their feet at most, but for those that only seem far.
+    max_followed: usize,
+}
+
+const SETTINGS: MeasureSettings = MeasureSettings { min_true_share: 0.5, batch: 1024, max_followed: 256 };
 
 /// Largest distance of a face's elements from its surface, model units; `triangles` are those of the face.
 pub fn of_face(surface: &Surface, geometry: &FaceGeometry, triangles: &[[u32; 3]], nodes: &[DVec3], tolerance: &Tolerance) -> f64 {
@@ -48,18 +53,19 @@ pub fn of_face(surface: &Surface, geometry: &FaceGeometry, triangles: &[[u32; 3]
                     halves.push([a, b, d]);
                 }
             });
-            let quick = surface.power_form();
-            let point = |(u, v)| surface.point_by(quick.as_ref(), u, v);
+            let power_form = surface.power_form();
+            let evaluator = Evaluator::new(surface, power_form.as_ref());
+            let point = |(u, v)| evaluator.point(u, v);
             let of_half = |k: usize| {
                 let at = beside_pole(surface, halves[k].map(|n| uv[n]));
                 let seen = of_triangle(&point, at, halves[k].map(|n| nodes[ids[n] as usize]));
-                bounded((surface, quick.as_ref()), seen)
+                bounded(evaluator, seen)
             };
-            let batches = par::map(halves.len().div_ceil(BATCH), |batch| {
-                (batch * BATCH..halves.len().min((batch + 1) * BATCH)).map(of_half).collect::<Vec<_>>()
+            let batches = par::map(halves.len().div_ceil(SETTINGS.batch), |batch| {
+                (batch * SETTINGS.batch..halves.len().min((batch + 1) * SETTINGS.batch)).map(of_half).collect::<Vec<_>>()
             });
             let farthest = batches.into_iter().flatten().collect();
-            follow((surface, quick.as_ref()), farthest, tolerance)
+            follow(evaluator, farthest, tolerance)
         }
     }
 }
@@ -92,7 +98,7 @@ impl GridRow<'_> {
             let ids = [self.frame.node(i, j), self.frame.node(i + 1, j), self.frame.node(i + 1, j + 1), self.frame.node(i, j + 1)];
             let points = ids.map(|n| self.nodes[n as usize]);
             let degenerate = (0..4).find(|k| ids[*k] == ids[(k + 1) % 4]);
-            // A triangle of the mesh that holds both b and d tells that the other diagonal was taken.
+            // A triangle of the mesh that holds both b and d shows that the other diagonal is used.
             let other = match (next.next(), degenerate) {
                 (Some(t), None) => {
                     next.next();
@@ -108,7 +114,7 @@ impl GridRow<'_> {
                 None => &[[0, 1, 2], [0, 2, 3]],
             };
             for half in halves {
-                let cell = Cell { places, points, half: *half };
+                let cell = HalfCell { places, points, half: *half };
                 farthest.push(match &fine {
                     Some(fine) if degenerate.is_none() => cell.farthest(fine, i, nu),
                     _ => {
@@ -118,7 +124,7 @@ impl GridRow<'_> {
                 });
             }
         }
-        follow((self.surface, None), farthest, self.tolerance)
+        follow(self.surface.evaluator(), farthest, self.tolerance)
     }
 
     /// Surface points at sixths of the cells of a row, when they form a tensor grid.
@@ -145,22 +151,22 @@ impl GridRow<'_> {
 }
 
 /// Half a cell of a grid.
-struct Cell {
+struct HalfCell {
     places: [(f64, f64); 4],
     points: [DVec3; 4],
     half: [usize; 3],
 }
 
-impl Cell {
+impl HalfCell {
     /// The farthest of its points by surface points at sixths of the row's cells.
-    fn farthest(&self, fine: &[DVec3], i: usize, nu: usize) -> Seen {
+    fn farthest(&self, fine: &[DVec3], i: usize, nu: usize) -> Farthest {
         let width = nu * SIX + 1;
         // Corners of the cell in sixths.
         let corner = [(0, 0), (SIX, 0), (SIX, SIX), (0, SIX)];
         let [a, b, c] = self.half.map(|k| corner[k]);
         let [pa, pb, pc] = self.half.map(|k| self.points[k]);
         let normal = (pb - pa).cross(pc - pa).normalize_or_zero();
-        let mut seen = Seen { seems: -1.0, p: pa, uv: self.places[0] };
+        let mut seen = Farthest { seems: -1.0, p: pa, uv: self.places[0] };
         let place = |x: f64, y: f64| {
             let (s, t) = (x / SIX as f64, y / SIX as f64);
             let [q0, q1, _, q3] = self.places;
@@ -177,13 +183,13 @@ impl Cell {
             }
             let seems = off(p, there, normal);
             if seems > seen.seems {
-                seen = Seen { seems, p, uv: place(x as f64, y as f64) };
+                seen = Farthest { seems, p, uv: place(x as f64, y as f64) };
             }
         }
         if let Some((seems, w)) = peak(middles).filter(|(seems, _)| *seems > seen.seems) {
             let along = |a: usize, b: usize, c: usize| a as f64 * w[0] + b as f64 * w[1] + c as f64 * w[2];
             let uv = place(along(a.0, b.0, c.0), along(a.1, b.1, c.1));
-            seen = Seen { seems, p: pa * w[0] + pb * w[1] + pc * w[2], uv };
+            seen = Farthest { seems, p: pa * w[0] + pb * w[1] + pc * w[2], uv };
         }
         seen
     }
@@ -191,7 +197,7 @@ impl Cell {
 
 /// The point of a triangle that seems farthest from the surface: by how much, where, and near which (u, v).
 #[derive(Clone, Copy)]
-struct Seen {
+struct Farthest {
     seems: f64,
     p: DVec3,
     uv: (f64, f64),
@@ -229,9 +235,9 @@ fn beside_pole(surface: &Surface, at: [(f64, f64); 3]) -> [(f64, f64); 3] {
 }
 
 /// The farthest of the 25 points of a triangle.
-fn of_triangle(point: &impl Fn((f64, f64)) -> DVec3, uv: [(f64, f64); 3], points: [DVec3; 3]) -> Seen {
+fn of_triangle(point: &impl Fn((f64, f64)) -> DVec3, uv: [(f64, f64); 3], points: [DVec3; 3]) -> Farthest {
     let normal = (points[1] - points[0]).cross(points[2] - points[0]).normalize_or_zero();
-    let mut seen = Seen { seems: -1.0, p: points[0], uv: uv[0] };
+    let mut seen = Farthest { seems: -1.0, p: points[0], uv: uv[0] };
     let place = |w: [f64; 3]| (uv[0].0 * w[0] + uv[1].0 * w[1] + uv[2].0 * w[2], uv[0].1 * w[0] + uv[1].1 * w[1] + uv[2].1 * w[2]);
     let spot = |w: [f64; 3]| points[0] * w[0] + points[1] * w[1] + points[2] * w[2];
     let mut middles = [0.0; 3];
@@ -244,25 +250,25 @@ fn of_triangle(point: &impl Fn((f64, f64)) -> DVec3, uv: [(f64, f64); 3], points
         }
         let seems = off(p, there, normal);
         if seems > seen.seems {
-            seen = Seen { seems, p, uv: at };
+            seen = Farthest { seems, p, uv: at };
         }
     }
     if let Some((seems, w)) = peak(middles).filter(|(seems, _)| *seems > seen.seems) {
-        seen = Seen { seems, p: spot(w), uv: place(w) };
+        seen = Farthest { seems, p: spot(w), uv: place(w) };
     }
     seen
 }
 
 /// The point with its distance from a near surface point, which its foot is no farther than: where (u, v) shear a surface, what is off along
 /// the normal of the triangle may be less than the distance.
-fn bounded((surface, quick): (&Surface, Option<&PowerForm>), seen: Seen) -> Seen {
-    let jet = surface.jet_by(quick, seen.uv.0, seen.uv.1);
+fn bounded(evaluator: Evaluator, seen: Farthest) -> Farthest {
+    let jet = evaluator.jet(seen.uv.0, seen.uv.1);
     let gap = seen.p - jet.p;
-    let Some(by) = step(jet.du, jet.dv, gap) else { return Seen { seems: gap.length(), ..seen } };
-    let ((u0, u1), (v0, v1)) = ranges(surface);
+    let Some(by) = step(jet.du, jet.dv, gap) else { return Farthest { seems: gap.length(), ..seen } };
+    let ((u0, u1), (v0, v1)) = ranges(evaluator.surface());
     let uv = ((seen.uv.0 + by.x).clamp(u0, u1), (seen.uv.1 + by.y).clamp(v0, v1));
-    let there = surface.point_by(quick, uv.0, uv.1).distance(seen.p);
-    if there < gap.length() { Seen { seems: there, uv, ..seen } } else { Seen { seems: gap.length(), ..seen } }
+    let there = evaluator.point(uv.0, uv.1).distance(seen.p);
+    if there < gap.length() { Farthest { seems: there, uv, ..seen } } else { Farthest { seems: gap.length(), ..seen } }
 }
 
 /// The ranges of u and v in which feet lie: a trimmed face may run over the seam of the surface below.
@@ -276,18 +282,18 @@ fn ranges(surface: &Surface) -> ((f64, f64), (f64, f64)) {
 }
 
 /// Follows the triangles that seem farthest to their feet: the distance of the farthest.
-fn follow((surface, quick): (&Surface, Option<&PowerForm>), mut farthest: Vec<Seen>, tolerance: &Tolerance) -> f64 {
+fn follow(evaluator: Evaluator, mut farthest: Vec<Farthest>, tolerance: &Tolerance) -> f64 {
     farthest.retain(|s| s.seems > tolerance.rounding);
     farthest.sort_by(|a, b| b.seems.total_cmp(&a.seems));
-    let (u, v) = ranges(surface);
+    let (u, v) = ranges(evaluator.surface());
     let (mut most, mut followed) = (0.0, 0);
     for seen in farthest {
-        if seen.seems < most || followed == FOLLOWED {
+        if seen.seems < most || followed == SETTINGS.max_followed {
             break;
         }
-        let distance = foot_within((surface, quick), seen.p, seen.uv, u, v).0;
+        let distance = foot_within(evaluator, seen.p, seen.uv, u, v).0;
         // What only seems far, as beside a pole, is passed by.
-        followed += usize::from(distance >= MIN_TRUE_SHARE * seen.seems);
+        followed += usize::from(distance >= SETTINGS.min_true_share * seen.seems);
         most = f64::max(most, distance);
     }
     most

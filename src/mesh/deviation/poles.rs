@@ -103,11 +103,11 @@ pub fn at_tip(surface: &Surface, tangents: &impl Fn(DVec2) -> [DVec3; 3], at: DV
     let axis = tip(surface, tangents, at)?;
     let from = tangents(at)[0];
     let mut step = 0.5 - at[1 - axis].clamp(0.0, 1.0);
-    for _ in 0..STEPS {
+    for _ in 0..MAX_TIP_STEPS {
         let mut place = at;
         place[1 - axis] += step;
         let (far, length) = (tangents(place)[0].distance(from), wanted(place));
-        if length >= NEARLY * far {
+        if length >= MIN_TIP_SHARE * far {
             return Some(length);
         }
         step *= length / far;
@@ -116,6 +116,6 @@ pub fn at_tip(surface: &Surface, tangents: &impl Fn(DVec2) -> [DVec3; 3], at: DV
 }
 
 /// Steps towards a tip: each halves the logarithm of what is missing.
-const STEPS: usize = 16;
+const MAX_TIP_STEPS: usize = 16;
 /// Share of the distance from a tip from which on a length is that.
-const NEARLY: f64 = 0.9;
+const MIN_TIP_SHARE: f64 = 0.9;

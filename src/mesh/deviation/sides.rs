@@ -6,18 +6,17 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::mesh::deviation::triangle;
-use crate::surface::Surface;
-use crate::surface::core::power_form::PowerForm;
+use crate::mesh::deviation::bend_bounds::bends_over;
+use crate::surface::Evaluator;
 
 /// How often a side is halved where the bound over the whole of it is not enough.
-const HALVES: u32 = 5;
+const MAX_HALVINGS: u32 = 5;
 
 /// A bound of the distance between the surface and the sides of a triangle, model units.
 ///
 /// `ends` are the ends of the sides in (u, v), in the order of the corners opposite ([`super::poles::sides`]); a side without them is left
 /// out. `p` are the corners. The search ends with the first distance above `wanted`, which need not be the largest.
-pub fn distance(of: (&Surface, Option<&PowerForm>), ends: [Option<[DVec2; 2]>; 3], p: [DVec3; 3], wanted: f64) -> f64 {
+pub fn distance(evaluator: Evaluator, ends: [Option<[DVec2; 2]>; 3], p: [DVec3; 3], wanted: f64) -> f64 {
     let up = (p[1] - p[0]).cross(p[2] - p[0]);
     let mut worst = 0.0_f64;
     for (k, places) in ends.into_iter().enumerate().filter_map(|(k, ends)| Some((k, ends?))) {
@@ -27,7 +26,7 @@ pub fn distance(of: (&Surface, Option<&PowerForm>), ends: [Option<[DVec2; 2]>; 3
         if places[0] == places[1] || along == DVec3::ZERO {
             continue;
         }
-        let side = Side { of, places, from, across: [normal, normal.cross(along)] };
+        let side = TriangleSide { evaluator, places, from, across: [normal, normal.cross(along)] };
         worst = worst.max(side.distance(wanted));
         if worst > wanted {
             break;
@@ -37,17 +36,17 @@ pub fn distance(of: (&Surface, Option<&PowerForm>), ends: [Option<[DVec2; 2]>; 3
 }
 
 /// A side with two directions across it.
-struct Side<'a> {
-    of: (&'a Surface, Option<&'a PowerForm>),
+struct TriangleSide<'a> {
+    evaluator: Evaluator<'a>,
     places: [DVec2; 2],
     from: DVec3,
     across: [DVec3; 2],
 }
 
-impl Side<'_> {
+impl TriangleSide<'_> {
     fn distance(&self, wanted: f64) -> f64 {
         let mut worst = 0.0_f64;
-        let mut open = vec![([0.0, 1.0], [DVec2::ZERO; 2], HALVES)];
+        let mut open = vec![([0.0, 1.0], [DVec2::ZERO; 2], MAX_HALVINGS)];
         while let Some((t, r, left)) = open.pop() {
             let bound = r[0].length().max(r[1].length()) + self.bulge(t);
             if bound > wanted && left > 0 {
@@ -68,7 +67,7 @@ impl Side<'_> {
     /// Where the surface is beside the side, along the two directions.
     fn beside(&self, t: f64) -> DVec2 {
         let at = self.places[0].lerp(self.places[1], t);
-        let d = self.of.0.point_by(self.of.1, at.x, at.y) - self.from;
+        let d = self.evaluator.point(at.x, at.y) - self.from;
         DVec2::new(d.dot(self.across[0]), d.dot(self.across[1]))
     }
 
@@ -77,7 +76,7 @@ impl Side<'_> {
         let ends = t.map(|t| self.places[0].lerp(self.places[1], t));
         let step = ends[1] - ends[0];
         let whole = (ends[0].min(ends[1]), ends[0].max(ends[1]));
-        let along = |normal| match triangle::bent_over(self.of.0, self.of.1, whole, normal) {
+        let along = |normal| match bends_over(self.evaluator, whole, normal) {
             Some(bends) => 0.125 * bends.along(step) + bends.jump,
             None => f64::INFINITY,
         };

@@ -1,4 +1,4 @@
-//! The faces as equations between counts, and what their contradictions are called.
+//! The faces as equations between counts, and their contradictions as faults.
 
 use std::collections::BTreeMap;
 
@@ -6,8 +6,8 @@ use crate::base::fault::{Fault, Result};
 use crate::base::origin::Origin;
 use crate::base::tolerance::WHOLE_NUMBER;
 use crate::mesh::border::layout::{Face, Layout};
+use crate::mesh::divide::equations::{Conflict, Relation, Unknown};
 use crate::mesh::divide::row_demand::RowDemand;
-use crate::mesh::divide::strips::{Conflict, Relation, Unknown};
 use crate::mesh::divide::verdict::Verdict;
 use crate::mesh::request::fault::{MeshFault, MeshLimit};
 use crate::mesh::request::input::Input;
@@ -17,10 +17,10 @@ use crate::mesh::size::sizing::{Decision, MOST, Sizing};
 
 /// A direction of a face as an unknown: what its rows want.
 #[derive(Clone, Debug)]
-struct Row {
+struct RowUnknown {
     face: usize,
     segment: Unknown,
-    /// The limit behind `least`, once the finished face has asked for more.
+    /// The limit behind `least`, once the finished face has raised it.
     limit: MeshLimit,
 }
 
@@ -30,7 +30,7 @@ pub struct Relations {
     /// The equations.
     pub list: Vec<Relation>,
     face_of: Vec<usize>,
-    rows: Vec<Row>,
+    rows: Vec<RowUnknown>,
     first_row: usize,
     /// Rows of each face: along u and v; of a triangle one, or three for its sides.
     pub of_face: Vec<Vec<usize>>,
@@ -101,7 +101,7 @@ impl Relations {
     fn row(&mut self, face: usize, demand: &RowDemand, least: u32) -> usize {
         let least = whole(demand.least).max(least);
         let segment = Unknown { least, demand: whole(demand.size).max(least), written: None, length: demand.length, even: false };
-        self.rows.push(Row { face, segment, limit: MeshLimit::Size });
+        self.rows.push(RowUnknown { face, segment, limit: MeshLimit::Size });
         let row = self.first_row + self.rows.len() - 1;
         self.of_face[face].push(row);
         row
@@ -123,7 +123,7 @@ impl Relations {
         self.rows.iter().map(|r| r.segment.clone())
     }
 
-    /// Asks for more where a finished face broke a limit. `counts` are of segments and rows.
+    /// Raises the demands of rows where a finished face broke a limit. `counts` are of segments and rows.
     pub fn raise(&mut self, verdicts: &[Verdict], counts: &[u32]) {
         for (face, verdict) in verdicts.iter().enumerate() {
             for (k, &row) in self.of_face[face].clone().iter().enumerate() {
@@ -157,7 +157,7 @@ impl Relations {
         Ok(())
     }
 
-    /// A contradiction in the user's words.
+    /// The fault of a contradiction.
     pub fn fault(&self, input: &Input, layout: &Layout, sizing: &Sizing, conflict: &Conflict) -> Fault {
         let plan = input.plan;
         let written = |segment: usize| -> (u32, Origin) {
@@ -194,18 +194,18 @@ impl Relations {
                 let count = face.and_then(|face| odd_rule(plan, sizing, face)).or_else(|| by.map(written)).unwrap_or((0, Origin::NONE));
                 MeshFault::OddCount { count, surface, at }.into()
             }
-            Conflict::TooCoarse { written: by, needs, least } => self.too_coarse(input, layout, written(*by), (*needs, *least)),
+            Conflict::TooCoarse { written: by, needs, least } => self.too_coarse(input, layout, written(*by), *needs, *least),
         }
     }
 
     /// A written count against a limit, or against the shape of a face.
-    fn too_coarse(&self, input: &Input, layout: &Layout, count: (u32, Origin), (needs, least): (usize, u32)) -> Fault {
+    fn too_coarse(&self, input: &Input, layout: &Layout, count: (u32, Origin), needs: usize, least: u32) -> Fault {
         let plan = input.plan;
         let row = needs.checked_sub(self.first_row).map(|r| &self.rows[r]);
         let at = row.map_or_else(|| layout.point(needs, 0.5), |r| crate::mesh::border::layout::middle(input, &layout.faces[r.face]));
         let angle = plan.settings.angle_error.filter(|_| row.is_some_and(|r| r.limit == MeshLimit::AngleError));
-        let asked = angle.map(|angle| (MeshLimit::AngleError, angle.1)).or_else(|| plan.bend_limit());
-        match asked {
+        let limit = angle.map(|angle| (MeshLimit::AngleError, angle.1)).or_else(|| plan.bend_limit());
+        match limit {
             Some((limit, says)) if least > 3 || row.is_some() => MeshFault::CountTooCoarse { count, limit, says, needed: least, at }.into(),
             _ => MeshFault::CountTooFew { count, needed: least, at }.into(),
         }

@@ -1,4 +1,4 @@
-//! How many steps the rows inside a face want: sampled curvature first, the finished mesh decides (see `limits`).
+//! How many steps the rows inside a face demand: sampled curvature first, the finished mesh decides (see `limits`).
 
 use glam::DVec3;
 
@@ -21,11 +21,11 @@ pub struct RowDemand {
     pub least: f64,
     /// Longest row, model units.
     pub length: f64,
-    /// Largest second difference along the rows, normal part, a step of the sample grid: what refinement goes by.
+    /// Largest second difference along the rows, normal part, a step of the sample grid: by which directions are refined.
     pub bend: f64,
 }
 
-/// Wishes along u and along v of a patch over the rectangle (a triangle: one for both).
+/// Demands along u and along v of a patch over the rectangle (a triangle: one for both).
 pub fn demands(surface: &Surface, u: (f64, f64), v: (f64, f64), size: f64, limits: &Limits) -> [RowDemand; 2] {
     let n = CELLS + 1;
     let at = |(low, high): (f64, f64), k: usize| low + (high - low) * k as f64 / CELLS as f64;

@@ -1,4 +1,4 @@
-//! Checks finished faces against size, chord error and angle, and says what is missing in which direction.
+//! Checks finished faces against size, chord error and angle, and by which factor counts are too small in each direction.
 
 use glam::DVec3;
 
@@ -10,8 +10,8 @@ use crate::mesh::border::layout::Face;
 use crate::mesh::data::face_geometry::FaceNodes;
 use crate::mesh::data::face_mesh::FaceMesh;
 use crate::mesh::data::mesh::Mesh;
-use crate::mesh::deviation::certify::{self, Proof};
-use crate::mesh::deviation::measure;
+use crate::mesh::deviation::proof::Proof;
+use crate::mesh::deviation::{certify, measure};
 use crate::mesh::divide::row_demand::{RowDemand, SIZE_ROOM};
 use crate::mesh::mapped::grid::Grid;
 use crate::mesh::request::fault::MeshLimit;
@@ -20,10 +20,19 @@ use crate::mesh::request::limits::Limits;
 use crate::mesh::request::recall::RecallFace;
 use crate::surface::{OneSided, Surface};
 
-/// Room for the measured chord error: what its search may leave unseen.
-const SEEN: f64 = 1.001;
+/// What steers the check of finished faces.
+struct CheckSettings {
+    /// Room for the measured chord error: what its search may leave unseen.
+    measured_room: f64,
+    /// Places along each direction of a face at which its normal is sampled, at least.
+    min_samples: usize,
+    /// Places along a side of a cell at most.
+    max_cell_samples: usize,
+}
 
-/// What a face asks for, as factors on its counts along u and along v (a triangle: the first for all).
+const SETTINGS: CheckSettings = CheckSettings { measured_room: 1.001, min_samples: 64, max_cell_samples: 16 };
+
+/// What a face demands, as factors on its counts along u and along v (a triangle: the first for all).
 #[derive(Clone, Debug)]
 pub struct Verdict {
     /// For the size; a written count may overrule it.
@@ -37,7 +46,7 @@ pub struct Verdict {
 }
 
 impl Verdict {
-    /// Nothing is asked.
+    /// Nothing is missing.
     pub const FINE: Self = Self { size: [1.0; 2], limit: [1.0; 2], broken: MeshLimit::Size, reached: 0.0 };
 
     /// No limit is broken.
@@ -61,12 +70,12 @@ pub struct Finished<'a> {
     /// Its place in the layout.
     pub face: &'a Face,
     /// Its geometry and ids.
-    pub ready: &'a FaceMesh,
+    pub face_mesh: &'a FaceMesh,
     /// Its elements in the mesh.
     pub triangles: std::ops::Range<usize>,
     /// Sampled bends, to choose the direction of refinement.
     pub demands: &'a [RowDemand; 2],
-    /// Directions whose counts are written out: the size does not speak there.
+    /// Directions whose counts are written out: the size does not act there.
     pub written: [bool; 2],
 }
 
@@ -75,7 +84,7 @@ pub fn check(input: &Input, limits: &Limits, mesh: &Mesh, faces: &[Finished], re
     par::map(faces.len(), |k| {
         let finished = &faces[k];
         let hash = |to: &mut StableHasher| {
-            let of_face = (finished.written, finished.demands, (input.tolerance, finished.ready.geometry.flipped));
+            let of_face = (finished.written, finished.demands, (input.tolerance, finished.face_mesh.geometry.flipped));
             (limits, finished.face.size.0, of_face).hash_into(to);
         };
         recall(k, &hash, &|| verdict_on(input, limits, mesh, finished))
@@ -85,37 +94,38 @@ pub fn check(input: &Input, limits: &Limits, mesh: &Mesh, faces: &[Finished], re
 fn verdict_on(input: &Input, limits: &Limits, mesh: &Mesh, finished: &Finished) -> Verdict {
     let surface = &input.model.surfaces[finished.face.surface.index()].surface;
     let mut verdict = Verdict::FINE;
-    sizes(finished, (mesh, input.tolerance.point), &mut verdict);
+    sizes(finished, mesh, input.tolerance.point, &mut verdict);
     if let Some(limit) = limits.chord {
-        chords(input, (surface, limit), mesh, finished, &mut verdict);
+        chords(input, limit, mesh, finished, &mut verdict);
     }
     if let Some(limit) = limits.angle {
-        turns(surface, finished, (limits, limit), &mut verdict);
+        turns(surface, finished, limits, limit, &mut verdict);
     }
     verdict
 }
 
 /// The chord error: proved by bounds. Where there is no proof it is measured, and where no place breaks the limit the bound is
 /// what has to fall.
-fn chords(input: &Input, (surface, limit): (&Surface, f64), mesh: &Mesh, finished: &Finished, verdict: &mut Verdict) {
-    let (geometry, triangles) = (&finished.ready.geometry, &mesh.triangles[finished.triangles.clone()]);
-    let proof = certify::of_face((surface, limit), geometry, triangles, &mesh.nodes);
+fn chords(input: &Input, limit: f64, mesh: &Mesh, finished: &Finished, verdict: &mut Verdict) {
+    let surface = &input.model.surfaces[finished.face.surface.index()].surface;
+    let (geometry, triangles) = (&finished.face_mesh.geometry, &mesh.triangles[finished.triangles.clone()]);
+    let proof = certify::of_face(surface, limit, geometry, triangles, &mesh.nodes);
     if proof == Proof::Kept {
         return;
     }
     let measured = measure::of_face(surface, geometry, triangles, &mesh.nodes, input.tolerance);
-    let over = measured * SEEN / limit;
+    let over = measured * SETTINGS.measured_room / limit;
     let (over, share) = match proof {
         Proof::Open(bound, [a, b]) | Proof::Broken(bound, [a, b]) if over <= 1.0 => (bound, [2.0 * a >= b, 2.0 * b >= a]),
         _ => (over, directions(finished)),
     };
     verdict.limit = share.map(|dominates| if dominates { over.sqrt().min(2.0) } else { 1.0 });
-    (verdict.broken, verdict.reached) = (MeshLimit::ChordError, over * limit / SEEN);
+    (verdict.broken, verdict.reached) = (MeshLimit::ChordError, over * limit / SETTINGS.measured_room);
 }
 
 /// Which directions bend enough to be worth refining: the larger one, and the other when it adds half as much.
 fn directions(finished: &Finished) -> [bool; 2] {
-    let FaceNodes::Grid(_, frame) = &finished.ready.geometry.nodes else {
+    let FaceNodes::Grid(_, frame) = &finished.face_mesh.geometry.nodes else {
         return [true; 2];
     };
     let (nu, nv) = frame.size();
@@ -125,10 +135,10 @@ fn directions(finished: &Finished) -> [bool; 2] {
 }
 
 /// Edges along u and v against the size with its room; diagonals are left aside.
-fn sizes(finished: &Finished, (mesh, near): (&Mesh, f64), verdict: &mut Verdict) {
+fn sizes(finished: &Finished, mesh: &Mesh, near: f64, verdict: &mut Verdict) {
     let most = finished.face.size.0 * SIZE_ROOM + near;
     let node = |id: u32| mesh.nodes[id as usize];
-    match &finished.ready.geometry.nodes {
+    match &finished.face_mesh.geometry.nodes {
         FaceNodes::Grid(_, frame) => {
             let (nu, nv) = frame.size();
             let mut longest = [0.0_f64; 2];
@@ -162,7 +172,7 @@ fn sizes(finished: &Finished, (mesh, near): (&Mesh, f64), verdict: &mut Verdict)
             }
             verdict.size = [longest.sqrt() / most; 2];
         }
-        // What is made freely keeps its limits by itself.
+        // What is meshed freely keeps its limits by itself.
         FaceNodes::Free(..) => {}
         FaceNodes::Blocks(blocks, places) => {
             let inner = blocks.inner as u32;
@@ -186,8 +196,8 @@ fn sizes(finished: &Finished, (mesh, near): (&Mesh, f64), verdict: &mut Verdict)
 }
 
 /// Turns of the normal over each cell: between its corners, and between places inside where cells are large.
-fn turns(surface: &Surface, finished: &Finished, (limits, limit): (&Limits, f64), verdict: &mut Verdict) {
-    let worst = match &finished.ready.geometry.nodes {
+fn turns(surface: &Surface, finished: &Finished, limits: &Limits, limit: f64, verdict: &mut Verdict) {
+    let worst = match &finished.face_mesh.geometry.nodes {
         FaceNodes::Grid(grid, _) => turns_of_grid(surface, grid),
         nodes => [0.0, 0.0, turn_of_cells(surface, nodes)],
     };
@@ -208,15 +218,10 @@ fn turns(surface: &Surface, finished: &Finished, (limits, limit): (&Limits, f64)
     }
 }
 
-/// Places along each direction of a face at which its normal is looked at, at least.
-const MAX_SAMPLES: usize = 64;
-/// Places along a side of a cell at most.
-const MOST_LOOKS: usize = 16;
-
 /// The largest turns over cells of a grid: along u, along v, and in all.
 fn turns_of_grid(surface: &Surface, grid: &Grid) -> [f64; 3] {
     let (nu, nv) = grid.size();
-    let parts = |n: usize| MAX_SAMPLES.div_ceil(n).min(MOST_LOOKS);
+    let parts = |n: usize| SETTINGS.min_samples.div_ceil(n).min(SETTINGS.max_cell_samples);
     let (ku, kv) = (parts(nu), parts(nv));
     let lean = |last: bool| if last { OneSided::Before } else { OneSided::After };
     let line = |j: usize, y: usize| -> Vec<DVec3> {
@@ -255,7 +260,7 @@ fn inside(grid: &Grid, (i, j): (usize, usize), (x, y): (f64, f64)) -> (f64, f64)
 fn turn_of_cells(surface: &Surface, nodes: &FaceNodes) -> f64 {
     let uv = nodes.listed_uv();
     let normals: Vec<DVec3> = uv.iter().map(|(u, v)| surface.normal(*u, *v)).collect();
-    let few = uv.len() < MAX_SAMPLES * MAX_SAMPLES;
+    let few = uv.len() < SETTINGS.min_samples * SETTINGS.min_samples;
     let mut worst = 0.0_f64;
     nodes.each_listed_cell(|corners| {
         let mut own: Vec<DVec3> = corners.iter().map(|c| normals[*c]).collect();

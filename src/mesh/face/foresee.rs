@@ -13,7 +13,7 @@ use crate::mesh::data::face_geometry::FaceNodes;
 use crate::mesh::data::face_mesh::FaceMesh;
 use crate::mesh::data::mesh::Mesh;
 use crate::mesh::data::quality::least_angle;
-use crate::mesh::deviation::triangle;
+use crate::mesh::deviation::edge_length;
 use crate::mesh::mapped::trilateral::LatticeIds;
 use crate::mesh::request::limits::Limits;
 use crate::mesh::request::methods::{Elements, Method};
@@ -284,7 +284,7 @@ fn round_pole(view: &View, ready: &FaceMesh, side: usize) -> f64 {
 fn wanted(surface: &Surface, limits: &Limits, nodes: &[Node]) -> f64 {
     let share = 1.0 / nodes.len() as f64;
     let (u, v) = nodes.iter().fold((0.0, 0.0), |(u, v), (_, at)| (u + share * at.0, v + share * at.1));
-    triangle::wanted(&surface.jet(u, v), limits.chord, limits.angle) * FILLED / SPACING
+    edge_length::wanted(&surface.jet(u, v), limits.chord, limits.angle) * FILLED / SPACING
 }
 
 /// Free elements for one of the map, by a cell: free ones are as long as the size lets them be, and no longer than twice what borders

@@ -1,8 +1,9 @@
 //! Mapped faces ready to be filled: their grids or lattices, with the ids of their border nodes.
 
 use crate::base::fault::Result;
-use crate::mesh::border::layout::{Face, Layout, middle, side_parameters};
+use crate::mesh::border::layout::{Face, Layout, middle};
 use crate::mesh::border::nodes::{Nodes, line};
+use crate::mesh::border::side_parameters::side_parameters;
 use crate::mesh::data::face_geometry::{FaceGeometry, FaceNodes};
 use crate::mesh::data::face_mesh::FaceMesh;
 use crate::mesh::mapped::grid::{self, Grid};

@@ -1,4 +1,4 @@
-//! Mapped faces with four sides, of which some may be poles: a grid of quads, or of triangles by the better diagonal.
+//! Mapped faces with four sides, of which some may be poles: the places of a grid, its nodes, and its quads or triangles.
 
 use glam::DVec3;
 
@@ -8,7 +8,7 @@ use crate::mesh::request::methods::Elements;
 use crate::surface::Surface;
 
 /// Rows of cells that one thread takes at a time.
-const ROWS: usize = 16;
+const ROWS_AT_ONCE: usize = 16;
 
 /// Global node ids of a grid.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,7 +22,7 @@ pub struct GridIds {
 }
 
 /// One cell: corners counter-clockwise from (i, j), `None` for a corner that a pole takes away.
-enum Cell {
+enum GridCell {
     Quad([u32; 4]),
     /// Three corners counter-clockwise.
     Triangle([u32; 3]),
@@ -65,16 +65,16 @@ impl GridIds {
         if kind == Elements::Triangles { (at_poles + 2 * quads, 0) } else { (at_poles, quads) }
     }
 
-    fn cell(&self, i: usize, j: usize) -> Cell {
+    fn cell(&self, i: usize, j: usize) -> GridCell {
         let (nu, nv) = self.size();
         let [a, b, c, d] = [self.node(i, j), self.node(i + 1, j), self.node(i + 1, j + 1), self.node(i, j + 1)];
         if self.poles[0] && j == 0 || self.poles[1] && i + 1 == nu {
             // The side a–b or b–c is one point.
-            Cell::Triangle(if self.poles[0] && j == 0 { [a, c, d] } else { [a, b, d] })
+            GridCell::Triangle(if self.poles[0] && j == 0 { [a, c, d] } else { [a, b, d] })
         } else if self.poles[2] && j + 1 == nv || self.poles[3] && i == 0 {
-            Cell::Triangle([a, b, c])
+            GridCell::Triangle([a, b, c])
         } else {
-            Cell::Quad([a, b, c, d])
+            GridCell::Quad([a, b, c, d])
         }
     }
 }
@@ -95,8 +95,8 @@ pub fn fill(frame: &GridIds, kind: Elements, flipped: bool, diagonals: &[bool], 
     for j in 0..nv {
         for i in 0..nu {
             match frame.cell(i, j) {
-                Cell::Triangle(t) => put(t),
-                Cell::Quad([a, b, c, d]) if kind == Elements::Triangles => {
+                GridCell::Triangle(t) => put(t),
+                GridCell::Quad([a, b, c, d]) if kind == Elements::Triangles => {
                     if diagonals[j * nu + i] {
                         put([a, b, d]);
                         put([b, c, d]);
@@ -105,7 +105,7 @@ pub fn fill(frame: &GridIds, kind: Elements, flipped: bool, diagonals: &[bool], 
                         put([a, c, d]);
                     }
                 }
-                Cell::Quad(q) => {
+                GridCell::Quad(q) => {
                     if let Some(slot) = quad.next() {
                         *slot = turned(q, flipped);
                     }
@@ -122,8 +122,8 @@ fn turned([a, b, c, d]: [u32; 4], flipped: bool) -> [u32; 4] {
 /// All cells as quads, from two rows of node ids at a time.
 fn quad_rows(frame: &GridIds, flipped: bool, quads: &mut [[u32; 4]]) {
     let nu = frame.size().0;
-    par::chunks_mut(quads, nu * ROWS, |chunk, part| {
-        let first = chunk * ROWS;
+    par::chunks_mut(quads, nu * ROWS_AT_ONCE, |chunk, part| {
+        let first = chunk * ROWS_AT_ONCE;
         let row = |j: usize| (0..=nu).map(|i| frame.node(i, j)).collect::<Vec<u32>>();
         let mut below = row(first);
         for (line, j) in part.chunks_mut(nu).zip(first..) {
@@ -134,57 +134,6 @@ fn quad_rows(frame: &GridIds, flipped: bool, quads: &mut [[u32; 4]]) {
             below = above;
         }
     });
-}
-
-/// For each cell whether the diagonal from (i + 1, j) to (i, j + 1) is the better one.
-///
-/// The better diagonal has its middle nearer to the surface; where both are as near (within `even`, model units) the one
-/// with the larger least angle; else the one from (i, j). Where a border turns back along itself diagonals end at the turn: from the
-/// node before it, which is the one after it, they would be one edge twice.
-pub fn diagonals(grid: &Grid, frame: &GridIds, surface: &Surface, nodes: &(dyn Fn(u32) -> DVec3 + Sync), even: f64) -> Vec<bool> {
-    let (nu, nv) = grid.size();
-    let mut other = vec![false; nu * nv];
-    par::chunks_mut(&mut other, nu, |j, row| {
-        let centers = grid.centers(surface, j);
-        let line = |j: usize| (0..=nu).map(|i| nodes(frame.node(i, j))).collect::<Vec<DVec3>>();
-        let (below, above) = (line(j), line(j + 1));
-        for (i, slot) in row.iter_mut().enumerate() {
-            let corners = [below[i], below[i + 1], above[i + 1], above[i]];
-            *slot = prefers_other(&corners, centers[i], even);
-        }
-    });
-    debug_assert_eq!(other.len(), nu * nv);
-    for (side, row) in frame.sides.iter().enumerate() {
-        for before in (2..row.len()).map(|k| k - 2).filter(|k| row[*k] == row[k + 2] && row[*k] != row[k + 1]) {
-            // Cells before and after the turn, and whether that is an end of their other diagonal.
-            let (cells, others) = match side {
-                0 => ([before, before + 1], [true, false]),
-                1 => ([before, before + 1].map(|j| j * nu + nu - 1), [false, true]),
-                2 => ([before, before + 1].map(|i| (nv - 1) * nu + i), [false, true]),
-                _ => ([before, before + 1].map(|j| j * nu), [true, false]),
-            };
-            cells.into_iter().zip(others).for_each(|(cell, through)| other[cell] = through);
-        }
-    }
-    other
-}
-
-fn prefers_other(&[a, b, c, d]: &[DVec3; 4], center: DVec3, even: f64) -> bool {
-    let normal = (c - a).cross(d - b).normalize_or_zero();
-    let off = |p: DVec3, q: DVec3| ((p + q) * 0.5 - center).dot(normal).abs();
-    let (first, second) = (off(a, c), off(b, d));
-    if (first - second).abs() > even {
-        return second < first;
-    }
-    let first = least_cosine(a, b, c).max(least_cosine(a, c, d));
-    let second = least_cosine(a, b, d).max(least_cosine(b, c, d));
-    second < first - crate::base::tolerance::WHOLE_NUMBER
-}
-
-/// Cosine of the smallest angle of a triangle: the largest of the three.
-fn least_cosine(a: DVec3, b: DVec3, c: DVec3) -> f64 {
-    let (ab, bc, ca) = ((b - a).normalize_or_zero(), (c - b).normalize_or_zero(), (a - c).normalize_or_zero());
-    (-ca.dot(ab)).max(-ab.dot(bc)).max(-bc.dot(ca))
 }
 
 /// A grid of `nu × nv` cells over a rectangle of (u, v).
@@ -251,8 +200,8 @@ impl Grid {
             self.rows(surface, 1, out);
             return;
         }
-        par::chunks_mut(out, width * ROWS, |chunk, part| {
-            let first = 1 + chunk * ROWS;
+        par::chunks_mut(out, width * ROWS_AT_ONCE, |chunk, part| {
+            let first = 1 + chunk * ROWS_AT_ONCE;
             self.rows(surface, first, part);
         });
     }
@@ -303,7 +252,7 @@ impl Grid {
 }
 
 /// First triangle of each row of cells of a grid meshed with triangles; empty for quads.
-pub fn triangle_rows(frame: &crate::mesh::mapped::grid::GridIds, triangles: bool) -> Vec<usize> {
+pub fn triangle_rows(frame: &GridIds, triangles: bool) -> Vec<usize> {
     let (nu, nv) = frame.size();
     if !triangles {
         return Vec::new();
@@ -369,15 +318,6 @@ mod tests {
         assert_eq!(edges.len(), all, "an edge is used twice in one sense");
         let free = edges.iter().filter(|(a, b)| edges.binary_search(&(*b, *a)).is_err()).count();
         assert_eq!(free, 6 + 2 * 3, "the side without a pole and two flanks");
-    }
-
-    #[test]
-    fn the_better_diagonal_is_nearer_to_the_surface() {
-        let corners = [DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 1.0), DVec3::Y];
-        assert!(prefers_other(&corners, DVec3::new(0.5, 0.5, 0.0), 1e-12), "a ridge between b and d lies low");
-        assert!(!prefers_other(&corners, DVec3::new(0.5, 0.5, 0.5), 1e-12));
-        let flat = [DVec3::ZERO, DVec3::X, DVec3::new(3.0, 1.0, 0.0), DVec3::Y];
-        assert!(prefers_other(&flat, DVec3::new(1.0, 0.5, 0.0), 1e-12), "the shorter diagonal has the larger least angle");
     }
 
     fn grid(sides: [Vec<f64>; 4]) -> Grid {

@@ -88,7 +88,7 @@ impl Blocks {
         };
         let feet = [point(0, x), point(1, z), point(2, z)];
         let center = ((feet[0].0 + feet[1].0 + feet[2].0) / 3.0, (feet[0].1 + feet[1].1 + feet[2].1) / 3.0);
-        let mut made = Maker { uv: Vec::new() };
+        let mut made = BlockMaker { uv: Vec::new() };
         let middle = made.add(center);
         // Spokes from the centre to the splits of the sides, the split left out: z, y and x steps long.
         let spokes = [z, y, x].iter().zip(feet).map(|(n, foot)| made.spoke(middle, center, foot, *n)).collect::<Vec<_>>();
@@ -96,15 +96,15 @@ impl Blocks {
         let mut blocks = Vec::new();
         let side_count = [a, b, c];
         // Places of side nodes are known only after all inner nodes: marked by their side and number.
-        let border = |side: usize, n: usize| Corner::Side(side, n);
-        let spoke = |k: usize, n: usize, foot: Corner| spokes[k].get(n).map_or(foot, |p| Corner::Inner(*p));
-        let along = |side: usize, from: usize, count: usize, up: bool| -> Vec<Corner> {
+        let border = |side: usize, n: usize| BlockCorner::Side(side, n);
+        let spoke = |k: usize, n: usize, foot: BlockCorner| spokes[k].get(n).map_or(foot, |p| BlockCorner::Inner(*p));
+        let along = |side: usize, from: usize, count: usize, up: bool| -> Vec<BlockCorner> {
             (0..=count).map(|n| border(side, if up { from + n } else { from - n })).collect()
         };
         // Block at V0: bottom x of side 0, left z of side 2; right the spoke to side 0, top the spoke to side 2.
         let (f0, f1, f2) = (border(0, x), border(1, z), border(2, z));
-        let reach = |k: usize, count: usize, foot: Corner| -> Vec<Corner> { (0..=count).map(|n| spoke(k, n, foot)).collect() };
-        let flip = |mut line: Vec<Corner>| {
+        let reach = |k: usize, count: usize, foot: BlockCorner| -> Vec<BlockCorner> { (0..=count).map(|n| spoke(k, n, foot)).collect() };
+        let flip = |mut line: Vec<BlockCorner>| {
             line.reverse();
             line
         };
@@ -113,11 +113,11 @@ impl Blocks {
         blocks.push([along(1, 0, z, true), flip(reach(1, y, f1)), flip(reach(0, z, f0)), along(0, a, y, false)]);
         // Block at V2: bottom y of side 2 from V2 down, left x of side 1 from V2 down.
         blocks.push([along(2, c, y, false), flip(reach(2, x, f2)), flip(reach(1, y, f1)), along(1, b, x, false)]);
-        let uv_of = |made: &Maker, corner: Corner| match corner {
-            Corner::Inner(n) => made.uv[n as usize],
-            Corner::Side(side, n) => point(side, n),
+        let uv_of = |made: &BlockMaker, corner: BlockCorner| match corner {
+            BlockCorner::Inner(n) => made.uv[n as usize],
+            BlockCorner::Side(side, n) => point(side, n),
         };
-        let mut quads: Vec<[Corner; 4]> = Vec::new();
+        let mut quads: Vec<[BlockCorner; 4]> = Vec::new();
         for sides in &blocks {
             made.block(sides, &uv_of, &mut quads);
         }
@@ -128,16 +128,16 @@ impl Blocks {
 
 /// A node of a block before places are given.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Corner {
+enum BlockCorner {
     Inner(u32),
     Side(usize, usize),
 }
 
-struct Maker {
+struct BlockMaker {
     uv: Vec<(f64, f64)>,
 }
 
-impl Maker {
+impl BlockMaker {
     fn add(&mut self, uv: (f64, f64)) -> u32 {
         self.uv.push(uv);
         (self.uv.len() - 1) as u32
@@ -154,9 +154,14 @@ impl Maker {
     }
 
     /// One block between bottom, right, top and left (ascending): inner nodes by bilinear blending of the sides.
-    fn block(&mut self, sides: &[Vec<Corner>; 4], uv_of: &impl Fn(&Self, Corner) -> (f64, f64), quads: &mut Vec<[Corner; 4]>) {
+    fn block(
+        &mut self,
+        sides: &[Vec<BlockCorner>; 4],
+        uv_of: &impl Fn(&Self, BlockCorner) -> (f64, f64),
+        quads: &mut Vec<[BlockCorner; 4]>,
+    ) {
         let (nu, nv) = (sides[0].len() - 1, sides[1].len() - 1);
-        let mut grid = vec![Corner::Inner(0); (nu + 1) * (nv + 1)];
+        let mut grid = vec![BlockCorner::Inner(0); (nu + 1) * (nv + 1)];
         for j in 0..=nv {
             for i in 0..=nu {
                 grid[j * (nu + 1) + i] = if j == 0 {
@@ -169,7 +174,7 @@ impl Maker {
                     sides[1][j]
                 } else {
                     let (x, y) = (i as f64 / nu as f64, j as f64 / nv as f64);
-                    let at = |c: Corner| uv_of(self, c);
+                    let at = |c: BlockCorner| uv_of(self, c);
                     let [b, r, t, l] = [at(sides[0][i]), at(sides[1][j]), at(sides[2][i]), at(sides[3][j])];
                     let [p00, p10, p11, p01] = [at(sides[0][0]), at(sides[0][nu]), at(sides[2][nu]), at(sides[2][0])];
                     let blend = |f: &dyn Fn((f64, f64)) -> f64| {
@@ -177,7 +182,7 @@ impl Maker {
                             - ((1.0 - x) * (1.0 - y) * f(p00) + x * (1.0 - y) * f(p10) + x * y * f(p11) + (1.0 - x) * y * f(p01))
                     };
                     let uv = (blend(&|p| p.0), blend(&|p| p.1));
-                    Corner::Inner(self.add(uv))
+                    BlockCorner::Inner(self.add(uv))
                 };
             }
         }
@@ -189,7 +194,7 @@ impl Maker {
         }
     }
 
-    fn finish(mut self, quads: Vec<[Corner; 4]>, counts: [usize; 3], point: &impl Fn(usize, usize) -> (f64, f64)) -> Blocks {
+    fn finish(mut self, quads: Vec<[BlockCorner; 4]>, counts: [usize; 3], point: &impl Fn(usize, usize) -> (f64, f64)) -> Blocks {
         let inner = self.uv.len();
         let mut sides: [Vec<u32>; 3] = [Vec::new(), Vec::new(), Vec::new()];
         for (side, n) in counts.into_iter().enumerate() {
@@ -205,9 +210,9 @@ impl Maker {
                 sides[side].push(place);
             }
         }
-        let place = |c: &Corner| match *c {
-            Corner::Inner(n) => n,
-            Corner::Side(side, n) => sides[side][n],
+        let place = |c: &BlockCorner| match *c {
+            BlockCorner::Inner(n) => n,
+            BlockCorner::Side(side, n) => sides[side][n],
         };
         let mut quads: Vec<[u32; 4]> = quads.iter().map(|q| [place(&q[0]), place(&q[1]), place(&q[2]), place(&q[3])]).collect();
         for q in &mut quads {

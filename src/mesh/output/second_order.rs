@@ -118,7 +118,7 @@ fn middle_of(surface: &Surface, edge: &Edge) -> DVec3 {
     }
     let range = |closed: bool| if closed { (f64::NEG_INFINITY, f64::INFINITY) } else { (0.0, 1.0) };
     let (u, v) = surface.closed();
-    let feet = [edge.uv, places[0], places[1]].map(|from| foot_within((surface, None), middle, from, range(u), range(v)));
+    let feet = [edge.uv, places[0], places[1]].map(|from| foot_within(surface.evaluator(), middle, from, range(u), range(v)));
     let best = feet.into_iter().fold((f64::INFINITY, edge.uv), |best, foot| if foot.0 < best.0 { foot } else { best });
     surface.point(best.1.0, best.1.1)
 }

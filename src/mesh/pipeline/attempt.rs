@@ -24,6 +24,7 @@ use crate::mesh::report::blame;
 use crate::mesh::report::explain::Explanation;
 use crate::mesh::request::input::Input;
 use crate::mesh::request::limits::Limits;
+use crate::mesh::request::work::allow;
 use crate::mesh::size::proximity::{self, Narrow};
 use crate::mesh::size::remark::Remark;
 use crate::mesh::size::sizing::{MOST, Sizing};
@@ -40,11 +41,10 @@ const MAX_SEARCHES: usize = 24;
 /// Times that the steps of the border of a face that closes on itself are halved for it.
 const HALVED: u32 = 6;
 
-/// Surfaces that are made ready once for their borders, faces and bounds, where there are few: each takes many times the room
-/// of its net.
+/// Surfaces whose power forms are kept for their borders, faces and bounds: each takes many times the room of its net.
 const HELD: usize = 64;
 
-/// The surfaces of faces that are surely made freely under limits, ready for many evaluations.
+/// Power forms of the surfaces of faces that are surely made freely under limits.
 fn held(input: &Input, layout: &Layout, limits: &Limits) -> Vec<PowerForm> {
     if limits.chord.is_none() && limits.angle.is_none() {
         return Vec::new();
@@ -165,10 +165,10 @@ impl Attempt<'_> {
         let (input, layout) = (self.input, &*self.layout);
         let mut unknown = self.sizing.segments(layout);
         unknown.extend(self.relations.rows());
-        let (counts, strip) = strips::solve(&unknown, &self.relations.list, (MOST, input.tolerance.point))
+        let (counts, strip) = strips::solve(&unknown, &self.relations.list, MOST, input.tolerance.point)
             .map_err(|conflict| self.relations.fault(input, layout, &self.sizing, &conflict))?;
         self.relations.refuse_odd_borders(input, layout, &self.sizing, &counts)?;
-        refuse_counts(input, layout, (&self.sizing, &self.relations), (&counts, &mut self.worth))?;
+        allow(refuse_counts(input, layout, &self.sizing, &self.relations.of_face, &counts)?, &mut self.worth);
         let fractions = |segment, count| self.sizing.fractions(segment, count);
         let nodes = Nodes::new(layout, &counts[..layout.pieces.segments.len()], fractions);
         Ok(Division { is_settled: counts == self.checked, counts, strip, nodes })
@@ -178,7 +178,7 @@ impl Attempt<'_> {
     fn round(&mut self) -> Result<Step> {
         let Division { counts, strip, nodes, is_settled } = self.divide()?;
         let (input, known, job) = (self.input, self.known, self.job);
-        let uneven = uneven::find(self.layout, (&nodes, input.tolerance.point), &self.sizing);
+        let uneven = uneven::find(self.layout, &nodes, input.tolerance.point, &self.sizing);
         if !uneven.is_empty() {
             return Ok(Step::Again(Retry::UnevenBorders(uneven), counts));
         }
@@ -240,8 +240,8 @@ impl Attempt<'_> {
         let sharp: Vec<Remark> = blames.iter().filter_map(|seen| seen.sharp.clone()).collect();
         let mut sizing = std::mem::take(&mut self.sizing);
         sizing.sharp = sharp.into_iter().reduce(Remark::sharper);
-        sizing.take(&counts);
-        sizing.take_refined(input, &prepared);
+        sizing.mark_used(&counts);
+        sizing.effects.mark_inside(input, &prepared);
         let mut explanation = Explanation::new(input, self.layout, &sizing, &prepared, (&counts, &strip));
         explanation.lines.iter_mut().zip(blames).for_each(|(line, blame)| line.push_str(&blame.line));
         Ok(Step::Done(Box::new(Done { nodes, prepared, sizing, mesh, explanation })))
@@ -267,7 +267,7 @@ impl Attempt<'_> {
         match retry {
             Retry::NearBorders(found) => {
                 self.narrow.extend(found);
-                self.sizing = Sizing::new(self.input, self.layout, self.size, (&recall_steps(self.known), &self.narrow))?;
+                self.sizing = Sizing::new(self.input, self.layout, self.size, &recall_steps(self.known), &self.narrow)?;
                 self.shortened = counts;
                 return Ok(());
             }
@@ -306,7 +306,7 @@ fn begin(
     size: f64,
     (known, job): (Option<&CacheView>, &Job),
 ) -> Result<(Sizing, Vec<[RowDemand; 2]>, Relations)> {
-    let sizing = Sizing::new(input, layout, size, (&recall_steps(known), &[]))?;
+    let sizing = Sizing::new(input, layout, size, &recall_steps(known), &[])?;
     refuse_large(input, layout, &sizing, job)?;
     let demands = demands(input, layout, &sizing, &Limits::of(input), known);
     let relations = Relations::new(layout, &demands);
@@ -344,7 +344,7 @@ fn written(layout: &Layout, sizing: &Sizing, face: usize) -> [bool; 2] {
 fn finished<'a>(layout: &'a Layout, sizing: &Sizing, prepared: &'a [FaceMesh], demands: &'a [[RowDemand; 2]]) -> Vec<Finished<'a>> {
     let one = |(f, (triangles, _)): (usize, FaceRanges)| Finished {
         face: &layout.faces[f],
-        ready: &prepared[f],
+        face_mesh: &prepared[f],
         triangles,
         demands: &demands[f],
         written: written(layout, sizing, f),

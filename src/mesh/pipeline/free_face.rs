@@ -20,7 +20,7 @@ use crate::mesh::tri::trouble::no_area;
 pub fn prepare(made: &FaceInput, face: &Face, (known, job): (Option<&CacheView>, &Job)) -> Result<FaceMesh> {
     let (border, chart, mut outline) = outlined(made, face).ok_or_else(|| no_area(made, face))?;
     if face.halved > 0 && face.is_grown() {
-        rings::add_rings(made, face, &border, (&chart, &mut outline));
+        rings::add_rings(made, face, &border, &chart, &mut outline);
     }
     let key = known.map(|known| {
         let odd = if face.takes_quads() { odd(made, face) } else { Vec::new() };

@@ -14,7 +14,7 @@ use crate::mesh::chart::halves::{Halves, NONE};
 use crate::mesh::chart::outline::Outline;
 use crate::mesh::data::face_geometry::Free;
 use crate::mesh::data::face_mesh::{FaceMesh, FreeInside};
-use crate::mesh::deviation::triangle;
+use crate::mesh::deviation::edge_length;
 use crate::mesh::quad::maker::{Maker, nodes};
 use crate::mesh::quad::net::Net;
 use crate::mesh::request::decider::Decider;
@@ -109,7 +109,7 @@ impl Fit<'_> {
     fn background_of_squares(&self) -> Background {
         let whole = self.outline.xy.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), xy| (l.min(*xy), h.max(*xy)));
         let size = self.face.size.0 * SPACING;
-        let wanted = |xy: DVec2| (HALVED * triangle::wanted(&self.chart.jet(xy), self.limits.chord, self.limits.angle)).min(size);
+        let wanted = |xy: DVec2| (HALVED * edge_length::wanted(&self.chart.jet(xy), self.limits.chord, self.limits.angle)).min(size);
         Background::new(self.chart, whole, 1.0 + self.made.input.plan.slope(), &wanted)
     }
 }

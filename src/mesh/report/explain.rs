@@ -7,7 +7,7 @@ use crate::mesh::data::face_mesh::FaceMesh;
 use crate::mesh::report::reasons;
 use crate::mesh::request::input::Input;
 use crate::mesh::request::methods::Method;
-use crate::mesh::size::sizing::{Sizing, elements_name};
+use crate::mesh::size::sizing::Sizing;
 use crate::model::SurfaceId;
 
 /// What was chosen for a face.
@@ -102,7 +102,7 @@ impl Explanation {
                     FaceNodes::Free(..) => "delaunay",
                     _ => "mapped",
                 },
-                elements: elements_name(ready.elements),
+                elements: ready.elements.word(),
                 sides,
             });
         }

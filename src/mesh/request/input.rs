@@ -8,7 +8,7 @@ use crate::network::Network;
 /// What a mesh is made from.
 #[derive(Clone, Copy)]
 pub struct Input<'a> {
-    /// What is asked.
+    /// The plan.
     pub plan: &'a Plan,
     /// Patches and edges.
     pub model: &'a Model,

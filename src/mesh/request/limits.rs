@@ -6,9 +6,9 @@ use crate::mesh::request::input::Input;
 /// Limits along a line, model units and radians.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Limits {
-    /// Largest distance of a step's chord from the curve.
+    /// `chord_error`: largest distance of a step's chord from the curve.
     pub chord: Option<f64>,
-    /// Largest turn of the tangent across a step.
+    /// `angle_error`: largest turn of the tangent across a step.
     pub angle: Option<f64>,
     /// What ends may move by without a change of any count.
     pub near: f64,
@@ -29,17 +29,17 @@ impl Limits {
     /// Share of the angle that a turn may be over it, along a curve of this length that turns by `whole` in all: what the
     /// length changes by where an end moves by the tolerance, and the tangents at both ends where a point between moves.
     pub fn turn_room(&self, length: f64, whole: f64) -> f64 {
-        WHOLE_NUMBER + (self.near / length * (1.0 + TANGENTS / whole)).min(MOST_ROOM)
+        WHOLE_NUMBER + (self.near / length * (1.0 + END_TURN / whole)).min(MAX_ROOM)
     }
 
     /// Share of the chord error that a step may be over it: distances from a chord go with the square of its length.
     pub(crate) fn chord_room(&self, length: f64) -> f64 {
-        WHOLE_NUMBER + (2.0 * self.near / length).min(MOST_ROOM)
+        WHOLE_NUMBER + (2.0 * self.near / length).min(MAX_ROOM)
     }
 }
 
 /// Turn between the tangents at the ends of a curve whose middle moves, over that way as a share of its length.
-const TANGENTS: f64 = 4.0;
+const END_TURN: f64 = 4.0;
 
 /// Share of a limit that room for moved ends is at most.
-const MOST_ROOM: f64 = 0.001;
+const MAX_ROOM: f64 = 0.001;

@@ -60,7 +60,7 @@ words! {
 }
 
 impl Method {
-    /// Whether sides are only as short as limits and written sizes ask for, and triangles as long as they may be.
+    /// Whether sides are only as short as limits and written sizes demand, and triangles as long as they may be.
     pub fn is_coarse(self) -> bool {
         matches!(self, Self::Isoline | Self::Display)
     }

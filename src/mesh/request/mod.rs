@@ -1,4 +1,4 @@
-//! What is asked of a mesh, and what all rooms after this one may read: the plan with its model, limits, sources of sizes.
+//! What is requested of a mesh, and what all rooms after this one may read: the plan with its model, limits, sources of sizes.
 
 pub mod decider;
 pub mod fault;

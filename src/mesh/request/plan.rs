@@ -1,4 +1,4 @@
-//! What is asked of a mesh: settings and rules, resolved to entities by the language.
+//! What is requested of a mesh: settings and rules, resolved to entities by the language.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +13,7 @@ use crate::model::imprint::Imprint;
 use crate::model::{Course, PatchId, SurfaceId};
 use crate::network::Chain;
 
-/// What a rule or a group speaks of.
+/// What a rule or a group applies to.
 #[derive(Clone, Debug)]
 pub enum Target {
     /// A curve, chain or link.
@@ -29,7 +29,7 @@ pub enum Target {
 }
 
 impl Target {
-    /// Whether it speaks of a face, given by its patch and surface: `Some(true)` of this one alone.
+    /// Whether it applies to a face, given by its patch and surface: `Some(true)` of this one alone.
     pub fn faces(&self, patch: PatchId, surface: SurfaceId) -> Option<bool> {
         match self {
             Self::Surface(s) => (*s == surface).then_some(false),
@@ -42,16 +42,16 @@ impl Target {
 /// `on ENTITY { … }`: settings for a part of the mesh.
 #[derive(Clone, Debug)]
 pub struct Rule {
-    /// What it speaks of.
+    /// What it applies to.
     pub target: Target,
-    /// What it says.
+    /// Its settings.
     pub settings: RuleSettings,
     /// The clause.
     pub origin: Origin,
 }
 
 impl Rule {
-    /// A rule that says nothing yet.
+    /// A rule without settings yet.
     pub fn on(target: Target, origin: Origin) -> Self {
         Self { target, settings: RuleSettings::default(), origin }
     }
@@ -68,7 +68,7 @@ pub enum Place {
     Box(Box3),
 }
 
-/// `near … { size radius }` or `in … { size }`: smaller elements at some places.
+/// `near … { size radius }` or `in … { size }`: smaller elements at some places; [`SizeRequests`](super::size_requests::SizeRequests) acts on it.
 #[derive(Clone, Debug)]
 pub struct Refine {
     /// Where.
@@ -92,7 +92,7 @@ pub struct GroupRequest {
     pub origin: Origin,
 }
 
-/// All that is asked of one mesh.
+/// All that is requested of one mesh.
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// Name as declared.
@@ -107,7 +107,7 @@ pub struct Plan {
     pub points: Vec<DVec3>,
     /// What is written of the whole mesh.
     pub settings: MeshSettings,
-    /// What joins faces that touch without a shared border, with the expression that asks for it.
+    /// What joins faces that touch without a shared border, with its expression.
     pub imprint: Option<(Imprint, Origin)>,
     /// How far apart borders of a surface and of its neighbours may be and still be one edge, model units; the tolerance for
     /// surfaces that are not listed.
@@ -140,7 +140,7 @@ impl Plan {
         written(MeshLimit::ChordError).or_else(|| written(MeshLimit::AngleError))
     }
 
-    /// What asks for the size: its expression, or the mesh where none is written.
+    /// Where the size is from: its expression, or the mesh where none is written.
     pub fn size_origin(&self) -> Origin {
         self.settings.size.map_or(self.origin, |size| size.1)
     }

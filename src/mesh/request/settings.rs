@@ -1,7 +1,8 @@
 //! The settings of a mesh, each declared once: its word, its type, what it takes, its range, its default and its documentation.
 //!
 //! From a declaration come the field that holds what is written, with the expression that says it, how it is read, its part in the key of
-//! a kept mesh, and all that the language, its editors, the reference and goldens tell of it. A new setting is a new line here, and the code that acts on it.
+//! a kept mesh, and all that the language, its editors, the reference and goldens show of it. A new setting is a new line here, and the code
+//! that acts on it, to which the line has a link.
 
 use super::methods::{Elements, Method};
 use crate::base::digest::{StableHash, StableHasher};
@@ -91,7 +92,7 @@ setting_values! {
 
 /// A block of settings.
 pub trait Settings: Default {
-    /// Its settings in the order in which they are told.
+    /// Its settings in the order in which they are listed.
     const DECLARED: &'static [Declared];
 
     /// Takes what is written; whether there is such a setting of such a type.
@@ -110,15 +111,21 @@ const fn trimmed(docs: &'static str) -> &'static str {
     }
 }
 
-/// Declares blocks of settings: `word: type, what it takes, range, default in words => default as a value;`, the last where there is one.
+/// Declares blocks of settings: `word: type, what it takes, range, default in words => default as a value, [what acts on it];`, the value
+/// where there is one. What acts on a setting is a path below the crate; it becomes a link in the documentation of its field.
 macro_rules! mesh_settings {
     ($($(#[$meta:meta])* $name:ident {
-        $($(#[doc = $docs:literal])+ $word:ident: $ty:ty, $takes:expr, $range:expr, $default:literal $(=> $value:expr)?;)*
+        $($(#[doc = $docs:literal])+ $word:ident: $ty:ty, $takes:expr, $range:expr, $default:literal $(=> $value:expr)?, [$($acting:literal),+];)*
     })*) => {$(
         $(#[$meta])*
         #[derive(Clone, Copy, Debug, Default, PartialEq)]
         pub struct $name {
-            $($(#[doc = $docs])+ pub $word: Located<$ty>,)*
+            $(
+                $(#[doc = $docs])+
+                #[doc = ""]
+                $(#[doc = concat!("- acted on by [`", $acting, "`](crate::", $acting, ")")])+
+                pub $word: Located<$ty>,
+            )*
         }
 
         impl $name {
@@ -178,66 +185,70 @@ mesh_settings! {
     MeshSettings {
         /// Target edge length: never exceeded on borders, by at most 5 % inside free faces. Nodes of free faces, and of borders that
         /// only free faces share, are 0.8 of it apart.
-        size: f64, Takes::Size, POSITIVE, "a 20th of the diagonal of what is meshed";
+        size: f64, Takes::Size, POSITIVE, "a 20th of the diagonal of what is meshed", ["mesh::size::sizing::Sizing::new"];
         /// Largest distance between mesh and surface; like all lengths of a mesh it may be a percentage of the diagonal of the box
         /// around what is meshed: `0.01%`.
-        chord_error: f64, Takes::Size, POSITIVE, "";
+        chord_error: f64, Takes::Size, POSITIVE, "",
+            ["mesh::deviation::curve::least_steps", "mesh::divide::verdict::check", "mesh::deviation::edge_length::wanted"];
         /// Largest turn of the normal across an element.
-        angle_error: f64, Takes::Angle, POSITIVE, "";
+        angle_error: f64, Takes::Angle, POSITIVE, "",
+            ["mesh::deviation::curve::least_steps", "mesh::divide::verdict::check", "mesh::deviation::edge_length::wanted"];
         /// Smallest edge length, also within `chord_error` and `angle_error`. A written one that prevents these, or is above a written
         /// size, is an error. Written counts and short edges of the model may go below it.
-        min_size: f64, Takes::Size, POSITIVE, "a hundredth of the size; written sizes and limits may go below it";
+        min_size: f64, Takes::Size, POSITIVE, "a hundredth of the size; written sizes and limits may go below it",
+            ["mesh::request::size_requests::SizeRequests::new"];
         /// Ratio of neighbouring sizes on free faces and their borders: away from a place with small steps the size grows by
         /// `growth - 1` of the distance. Rows of mapped faces are even and not graded.
-        growth: f64, Takes::Ratio, ABOVE_ONE, "1.3" => GROWTH;
+        growth: f64, Takes::Ratio, ABOVE_ONE, "1.3" => GROWTH, ["mesh::request::plan::Plan::slope", "mesh::request::sources::Sources::new"];
         /// Largest number of smoothing rounds on free faces; a node that no longer moves is done earlier. 0 does not smooth.
         smooth: u32, Takes::Count, ANY,
-            "5; 4 within `chord_error` or `angle_error`; 8 for quads and where lengths grow from short pieces; 30 with `quadtree`";
+            "5; 4 within `chord_error` or `angle_error`; 8 for quads and where lengths grow from short pieces; 30 with `quadtree`",
+            ["mesh::tri", "mesh::quad"];
         /// Kind of elements.
-        elements: Elements, Takes::Word(Elements::WORDS), ANY, "triangles" => Elements::Triangles;
+        elements: Elements, Takes::Word(Elements::WORDS), ANY, "triangles" => Elements::Triangles, ["mesh::size::face_settings::apply_rules"];
         /// 1, or 2 with mid nodes.
-        order: u8, Takes::Count, ORDERS, "1" => 1;
+        order: u8, Takes::Count, ORDERS, "1" => 1, ["mesh::output::second_order"];
         /// How faces are meshed: `auto` (`mapped` where it fits and its elements are well shaped, else `delaunay`), `mapped`,
         /// `delaunay`, `quadtree` (right-angled triangles in rows, finer where a border asks for it), `isoline` (cells between lines of
         /// constant u and v, as large as `chord_error` and `size` allow) or `display` (few and long triangles within `chord_error`).
-        method: Method, Takes::Word(Method::WORDS), ANY, "auto" => Method::Auto;
+        method: Method, Takes::Word(Method::WORDS), ANY, "auto" => Method::Auto, ["mesh::size::face_settings::apply_rules", "mesh::size::choose::choose"];
         /// Neighbouring faces share nodes.
-        conforming: bool, Takes::Flag, ANY, "true" => true;
+        conforming: bool, Takes::Flag, ANY, "true" => true, ["mesh::pipeline::build::build"];
         /// Faces that touch without a shared border share nodes there: edges that lie on a face, and the curves in which faces cross,
         /// are lines of the faces' meshes. Faces that overlap are E666.
-        imprint: bool, Takes::Flag, ANY, "false";
+        imprint: bool, Takes::Flag, ANY, "false", ["model::imprint", "mesh::border::layout::Layout::new"];
         /// Reverses the normals of faces. Without it faces that close point outwards; a list of faces that stays open keeps the
         /// normals it was given.
-        flip: bool, Takes::Flag, ANY, "false" => false;
+        flip: bool, Takes::Flag, ANY, "false" => false, ["mesh::request::plan::Plan::surfaces"];
     }
 
     /// Settings of a part of a mesh: `on things { … }`.
     RuleSettings {
         /// Steps over the whole length of a curve.
-        count: u32, Takes::Count, STEPS, "";
+        count: u32, Takes::Count, STEPS, "", ["mesh::size::segment_rules::SegmentRules"];
         /// Target edge length here.
-        size: f64, Takes::Size, POSITIVE, "";
+        size: f64, Takes::Size, POSITIVE, "", ["mesh::size::segment_rules::SegmentRules", "mesh::size::face_settings::apply_rules"];
         /// Last step over first step along the curve.
-        bias: f64, Takes::Ratio, POSITIVE, "";
+        bias: f64, Takes::Ratio, POSITIVE, "", ["mesh::size::segment_rules::SegmentRules"];
         /// Kind of elements of these faces.
-        elements: Elements, Takes::Word(Elements::WORDS), ANY, "";
+        elements: Elements, Takes::Word(Elements::WORDS), ANY, "", ["mesh::size::face_settings::apply_rules"];
         /// How these faces are meshed, by the words of the mesh's own `method`.
-        method: Method, Takes::Word(Method::WORDS), ANY, "";
+        method: Method, Takes::Word(Method::WORDS), ANY, "", ["mesh::size::face_settings::apply_rules"];
     }
 
     /// Settings of places with smaller elements: `near points and curves { … }`.
     NearSettings {
         /// Target edge length up to the radius; further out it grows as `growth` says. It only refines: of several sizes the
         /// smallest applies. A mapped face takes the least size on it for all its rows, and a written `count` stays.
-        size: f64, Takes::Size, POSITIVE, "";
+        size: f64, Takes::Size, POSITIVE, "", ["mesh::request::size_requests::SizeRequests::new"];
         /// Distance up to which the size applies.
-        radius: f64, Takes::Size, NOT_NEGATIVE, "0" => 0.0;
+        radius: f64, Takes::Size, NOT_NEGATIVE, "0" => 0.0, ["mesh::request::size_requests::SizeRequests::new"];
     }
 
     /// Settings of boxes with smaller elements: `in box(a, b) { … }`.
     BoxSettings {
         /// Target edge length in the box, as with `near`.
-        size: f64, Takes::Size, POSITIVE, "";
+        size: f64, Takes::Size, POSITIVE, "", ["mesh::request::size_requests::SizeRequests::new"];
     }
 }
 
@@ -249,7 +260,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_written_is_told_again_and_keyed() {
+    fn what_is_written_is_listed_and_keyed() {
         let mut settings = MeshSettings::default();
         let says = Origin(7);
         assert!(settings.set("size", Given::Number(2.5), says) && settings.set("method", Given::Word("isoline"), says));

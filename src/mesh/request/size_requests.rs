@@ -1,4 +1,4 @@
-//! What `near`, `in` and `min_size` ask for, as one function of the place.
+//! The sizes that `near`, `in` and `min_size` request, as one function of the place.
 
 use glam::DVec3;
 
@@ -9,24 +9,33 @@ use crate::mesh::request::plan::{Place, Refine};
 use crate::mesh::request::sources::{Body, Least, Source, Sources, pieces};
 use crate::surface::{Domain, Surface};
 
-/// How far the straight pieces of a curve may be from it, as a share of the size near it.
-const OFF: f64 = 1.0 / 64.0;
-/// Share of the size that stands for no size at all: the floor where none is written.
-const FLOOR: f64 = 0.01;
+/// What steers sources of sizes.
+struct RequestSettings {
+    /// Largest distance of a curve from the straight pieces that stand for it, over the size near it.
+    max_chord_error: f64,
+    /// Share of the size that is the floor where none is written.
+    floor: f64,
+    /// How much above the least length on a patch the one found may be, over itself.
+    least_error: f64,
+    /// Rectangles of a patch examined before the best length found is taken.
+    max_rectangles: usize,
+}
+
+const SETTINGS: RequestSettings = RequestSettings { max_chord_error: 1.0 / 64.0, floor: 0.01, least_error: 0.02, max_rectangles: 20_000 };
 
 /// Lengths wanted at places, and their floor.
 #[derive(Clone, Debug, Default)]
 pub struct SizeRequests {
     /// Sources of `near` and `in`; tags are places in the plan's list.
     pub sources: Sources,
-    /// What short edges of the model are taken for when sizes grow from them, model units.
+    /// Least size that short edges of the model have when sizes grow from them, model units.
     pub floor: f64,
     /// Floor of all sizes, model units: as written, else 0.
     pub written: f64,
 }
 
 impl SizeRequests {
-    /// Of a plan whose size is `size` where no rule says another.
+    /// Of a plan whose size is `size` where no rule gives another.
     ///
     /// Fails with E707 where a size is below a written `min_size`.
     pub fn new(input: &Input, size: f64) -> Result<Self> {
@@ -39,7 +48,7 @@ impl SizeRequests {
             return Err(MeshFault::BelowFloor { size, floor }.into());
         }
         let least = written.map(|s| s.0).fold(f64::INFINITY, f64::min);
-        let floor = plan.settings.min_size.map_or_else(|| (FLOOR * size).min(least), |s| s.0);
+        let floor = plan.settings.min_size.map_or_else(|| (SETTINGS.floor * size).min(least), |s| s.0);
         let items = plan.refines.iter().enumerate().flat_map(|(k, refine)| sources_of(refine, k as u32));
         Ok(Self { sources: Sources::new(items.collect(), plan.slope()), floor, written: plan.settings.min_size.map_or(0.0, |s| s.0) })
     }
@@ -52,7 +61,7 @@ fn sources_of(refine: &Refine, tag: u32) -> Vec<Source> {
             Place::Point(p) => vec![Source { body: Body::Point(*p), radius, size, steep: 1.0, tag }],
             Place::Box(b) => vec![Source { body: Body::Box(*b), radius: 0.0, size, steep: 1.0, tag }],
             Place::Chain(chain) => {
-                let off = OFF * size;
+                let off = SETTINGS.max_chord_error * size;
                 let piece = |(a, b)| Source { body: Body::Segment(a, b), radius: radius + off, size, steep: 1.0, tag };
                 pieces(chain, off).into_iter().map(piece).collect()
             }
@@ -61,28 +70,23 @@ fn sources_of(refine: &Refine, tag: u32) -> Vec<Source> {
     refine.at.iter().flat_map(of).collect()
 }
 
-/// E707: a limit asks for elements of a size below the floor.
+/// E707: a limit demands elements of a size below the floor.
 pub fn floor_keeps(input: &Input, needed: f64, at: DVec3) -> Fault {
     let plan = input.plan;
     let (limit, says) = plan.bend_limit().unwrap_or((MeshLimit::Size, plan.origin));
     MeshFault::FloorKeeps { limit, says, floor: plan.settings.min_size.unwrap_or((needed, plan.origin)), needed, at }.into()
 }
 
-/// How much above the least length on a patch the one found may be.
-const NEARLY: f64 = 0.02;
-/// Rectangles looked at before the best one found is taken.
-const RECTANGLES: usize = 20_000;
-
-/// The least length that sources ask for on a patch, within `NEARLY` of itself, where that is below `most`: rectangles
+/// The least length that sources want on a patch, within 2 % of itself, where that is below `most`: rectangles
 /// are halved where their box leaves room for less.
-pub fn least_on(surface: &Surface, (u, v): ((f64, f64), (f64, f64)), sources: &Sources, most: f64) -> Option<Least> {
+pub fn least_on(surface: &Surface, u: (f64, f64), v: (f64, f64), sources: &Sources, most: f64) -> Option<Least> {
     if sources.is_empty() || sources.least() >= most {
         return None;
     }
     let triangle = surface.domain() == Domain::Triangle;
     let mut best: Option<Least> = None;
     let mut open = vec![(u, v)];
-    for _ in 0..RECTANGLES {
+    for _ in 0..SETTINGS.max_rectangles {
         let Some((u, v)) = open.pop() else { break };
         if triangle && u.0 + v.0 >= 1.0 {
             continue;
@@ -100,7 +104,7 @@ pub fn least_on(surface: &Surface, (u, v): ((f64, f64), (f64, f64)), sources: &S
             }
         }
         let now = best.map_or(most, |b| b.size);
-        if (here.size - sources.steepest() * reach).max(sources.least()) >= now * (1.0 - NEARLY) {
+        if (here.size - sources.steepest() * reach).max(sources.least()) >= now * (1.0 - SETTINGS.least_error) {
             continue;
         }
         let jet = surface.jet(x, y);

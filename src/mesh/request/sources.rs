@@ -64,7 +64,7 @@ pub struct Source {
 pub const STEEP: f64 = 3.0;
 
 impl Source {
-    /// Whether it asks for less than `most` anywhere in a box.
+    /// Whether it wants less than `most` anywhere in a box.
     pub fn reaches(&self, place: &Box3, slope: f64, most: f64) -> bool {
         let own = self.body.bounds();
         let gap = (own.min - place.max).max(place.min - own.max).max(DVec3::ZERO).length();
@@ -78,7 +78,7 @@ impl Source {
 
 /// A node of the tree: the items from the first to before the second, or two nodes: the next one and `right`.
 #[derive(Clone, Copy, Debug)]
-struct Node {
+struct TreeNode {
     /// Box of all bodies, grown by their radii.
     bounds: Box3,
     /// The least size.
@@ -100,14 +100,14 @@ pub struct Least {
 #[derive(Clone, Debug, Default)]
 pub struct Sources {
     items: Vec<Source>,
-    nodes: Vec<Node>,
+    nodes: Vec<TreeNode>,
     slope: f64,
     steepest: f64,
     least: f64,
 }
 
 /// Items of a leaf.
-const LEAF: usize = 4;
+const LEAF_ITEMS: usize = 4;
 
 impl Sources {
     /// A tree over sources; lengths grow by `slope` a unit of distance.
@@ -146,12 +146,12 @@ impl Sources {
         self.least
     }
 
-    /// The length at a point, `most` where no source asks for less.
+    /// The length at a point, `most` where no source wants less.
     pub fn at(&self, p: DVec3, most: f64) -> f64 {
         self.who(p, most).map_or(most, |found| found.size)
     }
 
-    /// The source that asks for the least length at a point, where that is below `most`.
+    /// The source that wants the least length at a point, where that is below `most`.
     pub fn who(&self, p: DVec3, most: f64) -> Option<Least> {
         self.search(p, most, |source| source.at(p, self.slope))
     }
@@ -182,7 +182,7 @@ impl Sources {
             node.least + self.slope * outside(&node.bounds, p)
         };
         let (mut best, mut found) = (most, None);
-        let mut stack = [(0_u32, 0.0_f64); STACK];
+        let mut stack = [(0_u32, 0.0_f64); STACK_DEPTH];
         stack[0] = (0, bound(0));
         let mut open = 1;
         while open > 0 {
@@ -212,10 +212,10 @@ impl Sources {
 }
 
 /// Deeper than the halvings of any list.
-const STACK: usize = 72;
+const STACK_DEPTH: usize = 72;
 
 /// Halves a list across the longest side of the box of its middles, down to leaves.
-fn split(items: &mut [Source], first: u32, nodes: &mut Vec<Node>) {
+fn split(items: &mut [Source], first: u32, nodes: &mut Vec<TreeNode>) {
     let grown = |s: &Source| {
         let b = s.body.bounds();
         Box3 { min: b.min - DVec3::splat(s.radius), max: b.max + DVec3::splat(s.radius) }
@@ -223,8 +223,8 @@ fn split(items: &mut [Source], first: u32, nodes: &mut Vec<Node>) {
     let bounds = items.iter().fold(Box3::EMPTY, |all, s| all.union(grown(s)));
     let least = items.iter().map(|s| s.size).fold(f64::INFINITY, f64::min);
     let here = nodes.len();
-    nodes.push(Node { bounds, least, items: (first, first + items.len() as u32), right: 0 });
-    if items.len() <= LEAF {
+    nodes.push(TreeNode { bounds, least, items: (first, first + items.len() as u32), right: 0 });
+    if items.len() <= LEAF_ITEMS {
         return;
     }
     let middles = Box3::of(items.iter().map(|s| s.body.bounds().center()));
@@ -241,7 +241,7 @@ fn split(items: &mut [Source], first: u32, nodes: &mut Vec<Node>) {
 }
 
 /// Halvings of a curve's fraction.
-const MAX_DEPTH: u32 = 40;
+const MAX_HALVINGS: u32 = 40;
 
 /// A chain as straight pieces that it is nowhere farther from than `off`, by the bound of its second derivative.
 pub fn pieces(chain: &Chain, off: f64) -> Vec<(DVec3, DVec3)> {
@@ -250,7 +250,7 @@ pub fn pieces(chain: &Chain, off: f64) -> Vec<(DVec3, DVec3)> {
     stops.push(1.0);
     let mut all = Vec::new();
     for w in stops.windows(2) {
-        let mut open = vec![(w[0], w[1], MAX_DEPTH)];
+        let mut open = vec![(w[0], w[1], MAX_HALVINGS)];
         while let Some((a, b, left)) = open.pop() {
             let width = b - a;
             let fine = || {

@@ -24,7 +24,7 @@ pub fn too_much_work(input: &Input, surface: Origin) -> Fault {
 /// Work that a mesh of some surfaces may take beside that of its elements, in evaluations of curves and surfaces: more where a point of
 /// one is made of many curves.
 pub fn work_on<'a>(surfaces: impl Iterator<Item = &'a Surface>) -> u64 {
-    /// Curves that are worth as much again.
+    /// Number of curves that cost as much again.
     const CURVES: usize = 16;
     let curves = |surface: &Surface| {
         let (across, along) = surface.curves_of_a_point();

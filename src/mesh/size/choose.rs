@@ -38,7 +38,7 @@ pub fn choose(input: &Input, layout: &mut Layout) -> Result<()> {
     Ok(())
 }
 
-/// Why a face of quads that nothing says to map is not, in words that follow "a face".
+/// Why a face of quads without a written method is not mapped, in words that follow "a face".
 pub(crate) fn pole(face: &Face) -> Option<String> {
     let is_quads = face.method == Method::Auto && face.elements == Elements::Quads && !face.is_triangle();
     (is_quads && face.sides.iter().any(|side| side.uses.is_empty())).then(|| "with a pole, where a map would make triangles".to_owned())

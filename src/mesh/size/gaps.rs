@@ -15,15 +15,15 @@ use crate::mesh::request::limits::Limits;
 use crate::model::segments::SegmentUse;
 use crate::surface::{Domain, Surface, foot_within};
 
-/// Places along a segment at which gaps and bends are asked for, less one.
+/// Places along a segment at which gaps and bends are sampled, less one.
 pub const PLACES: usize = 64;
 /// Least share of a chord error that a gap has to leave to the bend: a tenth of the step that would do without a gap.
-const LEFT: f64 = 0.01;
-/// Share of a distance that matters up to which another one is taken for what it seems at first.
+const MIN_LEFT_SHARE: f64 = 0.01;
+/// Share of the tolerance up to which a distance is not refined.
 pub const SLIGHT: f64 = 0.001;
 
 /// A segment beside a face, from its start to its end.
-pub struct Beside {
+pub struct SegmentBeside {
     /// Places in (u, v) of the face.
     pub places: Vec<(f64, f64)>,
     /// Points of the segment.
@@ -32,15 +32,15 @@ pub struct Beside {
     pub off: Vec<f64>,
 }
 
-impl Beside {
+impl SegmentBeside {
     /// Of points of a segment with their places on the surface.
-    pub fn new(surface: &Surface, (places, points): (Vec<(f64, f64)>, Vec<DVec3>), slight: f64) -> Self {
+    pub fn new(surface: &Surface, places: Vec<(f64, f64)>, points: Vec<DVec3>, slight: f64) -> Self {
         let off = places.iter().zip(&points).map(|(uv, p)| distance(surface, *p, *uv, slight)).collect();
         Self { places, points, off }
     }
 }
 
-/// How far a point is from a surface near a place; no more than `slight` is not looked at closely.
+/// How far a point is from a surface near a place; one up to `slight` is not refined.
 pub fn distance(surface: &Surface, p: DVec3, place: (f64, f64), slight: f64) -> f64 {
     let first = p.distance(surface.point(place.0, place.1));
     if first <= slight {
@@ -48,11 +48,11 @@ pub fn distance(surface: &Surface, p: DVec3, place: (f64, f64), slight: f64) -> 
     }
     let over = |closed: bool| if closed { (f64::NEG_INFINITY, f64::INFINITY) } else { (0.0, 1.0) };
     let (u, v) = if surface.domain() == Domain::Loop { surface.closed() } else { (false, false) };
-    foot_within((surface, None), p, place, over(u), over(v)).0
+    foot_within(surface.evaluator(), p, place, over(u), over(v)).0
 }
 
 /// A segment as one side of a face has it.
-fn beside(input: &Input, layout: &Layout, own: &Face, (side, u): (usize, &SegmentUse)) -> Beside {
+fn beside(input: &Input, layout: &Layout, own: &Face, side: usize, u: &SegmentUse) -> SegmentBeside {
     let surface = &input.model.surfaces[own.surface.index()].surface;
     let share = |i: usize| i as f64 / PLACES as f64;
     let points: Vec<DVec3> = (0..=PLACES).map(|i| layout.point(u.segment, share(i))).collect();
@@ -65,26 +65,26 @@ fn beside(input: &Input, layout: &Layout, own: &Face, (side, u): (usize, &Segmen
         }
         places
     });
-    Beside::new(surface, (places, points), input.tolerance.point * SLIGHT)
+    SegmentBeside::new(surface, places, points, input.tolerance.point * SLIGHT)
 }
 
-/// What is left of a chord error for the bend where an edge is so far off; never nothing.
-pub fn left(limit: f64, off: f64) -> f64 {
-    (limit - off).max(limit * LEFT)
+/// What is left of a chord error for the bend where an edge is so far off the surface; never 0.
+pub fn remaining_chord_error(limit: f64, off: f64) -> f64 {
+    (limit - off).max(limit * MIN_LEFT_SHARE)
 }
 
-/// What runs beside each face, side by side, where limits are asked about it: free faces with bends, and those whose borders
+/// What runs beside each face, side by side, where limits depend on it: free faces with bends, and those whose borders
 /// do not come from themselves.
-pub fn rows(input: &Input, layout: &Layout, limits: &Limits) -> Vec<Vec<Beside>> {
+pub fn rows(input: &Input, layout: &Layout, limits: &Limits) -> Vec<Vec<SegmentBeside>> {
     par::map(layout.faces.len(), |f| {
         let own = &layout.faces[f];
         let surface = &input.model.surfaces[own.surface.index()].surface;
         let bends = own.free && !surface.is_flat() && (limits.chord.is_some() || limits.angle.is_some());
-        let asked = bends || limits.chord.is_some() && is_off(input, own, surface);
-        // Made ready once for all sides.
-        let _ready = if asked { surface.power_form() } else { None };
-        let sides = own.sides.iter().enumerate().filter(|_| asked);
-        sides.flat_map(|(k, side)| side.uses.iter().map(move |u| beside(input, layout, own, (k, u)))).collect()
+        let needed = bends || limits.chord.is_some() && is_off(input, own, surface);
+        // Converted once for all sides.
+        let _power_form = if needed { surface.power_form() } else { None };
+        let sides = own.sides.iter().enumerate().filter(|_| needed);
+        sides.flat_map(|(k, side)| side.uses.iter().map(move |u| beside(input, layout, own, k, u))).collect()
     })
 }
 
@@ -94,13 +94,13 @@ fn is_off(input: &Input, own: &Face, surface: &Surface) -> bool {
 }
 
 /// E703 where an edge is glued so far beside a face that nothing is left of the chord error.
-pub fn refuse(input: &Input, layout: &Layout, limits: &Limits, rows: &[Vec<Beside>]) -> Result<()> {
+pub fn refuse(input: &Input, layout: &Layout, limits: &Limits, rows: &[Vec<SegmentBeside>]) -> Result<()> {
     let (Some(limit), Some((_, says))) = (limits.chord, input.plan.settings.chord_error) else { return Ok(()) };
     for (face, rows) in layout.faces.iter().zip(rows) {
         let surface = &input.model.surfaces[face.surface.index()].surface;
         let all = rows.iter().filter(|_| is_off(input, face, surface)).flat_map(|row| row.off.iter().zip(&row.points));
         let (gap, at) = all.fold((0.0, DVec3::ZERO), |found, (gap, at)| if *gap > found.0 { (*gap, *at) } else { found });
-        if gap > limit * (1.0 - LEFT) {
+        if gap > limit * (1.0 - MIN_LEFT_SHARE) {
             return Err(MeshFault::GapTooWide { gap, limit: (limit, says), surface: surface.origin(), at }.into());
         }
     }

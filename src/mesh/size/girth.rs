@@ -9,17 +9,22 @@ use crate::mesh::chart::rings::way_round;
 use crate::mesh::size::proximity::Narrow;
 use crate::surface::Domain;
 
-/// Elements all round at least.
-const ROUND: f64 = 3.0;
-/// Steps that are longer than allowed by less stay.
-const SLACK: f64 = 1.15;
-/// The least step, over the least of the size and of the step at the widest place: towards a tip steps get no shorter.
-const LEAST: f64 = 0.25;
+/// What steers the steps of seams and of borders that turn back.
+struct GirthSettings {
+    /// Elements all round at least.
+    min_elements: f64,
+    /// Steps that are longer than allowed by less than this factor stay.
+    slack: f64,
+    /// The least step, over the least of the size and of the step at the widest place: towards a tip steps get no shorter.
+    min_step: f64,
+}
+
+const SETTINGS: GirthSettings = GirthSettings { min_elements: 3.0, slack: 1.15, min_step: 0.25 };
 
 /// Places of the seams of a face where steps have to be shorter.
-pub fn find(made: &FaceInput, face: &Face) -> Vec<Narrow> {
-    let surface = &made.input.model.surfaces[face.surface.index()].surface;
-    let mut found = turned(made, face);
+pub fn find(context: &FaceInput, face: &Face) -> Vec<Narrow> {
+    let surface = &context.input.model.surfaces[face.surface.index()].surface;
+    let mut found = turned(context, face);
     if surface.domain() == Domain::Loop || face.sides.len() != 4 {
         return found;
     }
@@ -28,21 +33,21 @@ pub fn find(made: &FaceInput, face: &Face) -> Vec<Narrow> {
         if used.segment != facing.segment {
             continue;
         }
-        let at = made.nodes.fractions(used.segment, false);
+        let at = context.nodes.fractions(used.segment, false);
         let middles: Vec<f64> = at.windows(2).map(|w| 0.5 * (w[0] + w[1])).collect();
         let along = |f: &f64| used.s.0 + (used.s.1 - used.s.0) * if used.against { 1.0 - f } else { *f };
         let mut lengths: Vec<f64> = middles.iter().map(along).collect();
         lengths.sort_by(f64::total_cmp);
-        let [from, to] = [one, other].map(|side| places(made.input, face, side, &lengths));
-        let mut round: Vec<f64> = from.iter().zip(&to).map(|(p, q)| way_round(surface, *p, *q) / ROUND).collect();
+        let [from, to] = [one, other].map(|side| places(context.input, face, side, &lengths));
+        let mut round: Vec<f64> = from.iter().zip(&to).map(|(p, q)| way_round(surface, *p, *q) / SETTINGS.min_elements).collect();
         if used.against {
             round.reverse();
         }
-        let least = LEAST * round.iter().copied().fold(0.0, f64::max).min(face.size.0);
+        let least = SETTINGS.min_step * round.iter().copied().fold(0.0, f64::max).min(face.size.0);
         for ((w, f), round) in at.windows(2).zip(&middles).zip(&round) {
-            let (length, size) = (made.layout.length(used.segment) * (w[1] - w[0]), round.max(least));
-            if length > SLACK * size {
-                found.push(Narrow { segment: used.segment, f: *f, size, must: false });
+            let (length, size) = (context.layout.length(used.segment) * (w[1] - w[0]), round.max(least));
+            if length > SETTINGS.slack * size {
+                found.push(Narrow { segment: used.segment, f: *f, size, crossing: false });
             }
         }
     }
@@ -50,13 +55,13 @@ pub fn find(made: &FaceInput, face: &Face) -> Vec<Narrow> {
 }
 
 /// Places of borders that turn back along themselves: their steps are halved again and again.
-fn turned(made: &FaceInput, face: &Face) -> Vec<Narrow> {
+fn turned(context: &FaceInput, face: &Face) -> Vec<Narrow> {
     let mut found = Vec::new();
     for segment in face.turns().map(|turn| turn.segment) {
-        let whole = made.layout.length(segment);
+        let whole = context.layout.length(segment);
         let size = (0..face.halved).fold(whole.min(face.size.0), |size, _| 0.5 * size);
-        for w in made.nodes.fractions(segment, false).windows(2).filter(|w| whole * (w[1] - w[0]) > SLACK * size) {
-            found.push(Narrow { segment, f: 0.5 * (w[0] + w[1]), size, must: false });
+        for w in context.nodes.fractions(segment, false).windows(2).filter(|w| whole * (w[1] - w[0]) > SETTINGS.slack * size) {
+            found.push(Narrow { segment, f: 0.5 * (w[0] + w[1]), size, crossing: false });
         }
     }
     found

@@ -29,106 +29,124 @@ pub struct Narrow {
     /// Longest step there, model units.
     pub size: f64,
     /// Steps cross there: rows of mapped faces beside it have to follow.
-    pub must: bool,
+    pub crossing: bool,
 }
 
-/// Longest step over the distance to the border that faces it: the triangle with a right angle at its end has 27°.
-const ACROSS: f64 = 2.0;
-/// The same for quads, whose cells have sides of two steps.
-const ACROSS_QUADS: f64 = 1.0;
-/// The least step that facing borders ask for, over the size, where no `min_size` is written: a long gap is not filled with
-/// steps as short as it is wide.
-const LEAST: f64 = 1.0 / 16.0;
-/// Steps that face each other over less than that, up to which they are a narrow place of its own and no gap along a border:
-/// there steps get as short as it is narrow, for lengths grow from it at once.
-const FEW: usize = 24;
-/// How much shorter such steps get at a time: what is long shows as more of them.
-const DEEPER: f64 = 0.3;
-/// The shortest of them, in tolerances.
-const SHORTEST: f64 = 16.0;
-/// Steps that are longer than allowed by less stay.
-const SLACK: f64 = 1.15;
-/// What is halved becomes a little shorter than half.
-const HALF: f64 = 0.45;
-/// Steps that cross are halved down to so many tolerances; then the curves themselves meet.
-const TOUCHING: f64 = 4.0;
-/// Cosine of the angle from which two edges at a node are no corner: 150°.
-const SMOOTH: f64 = -0.866;
-/// Share of what the two legs of a corner are apart that is still the corner's doing.
-const CORNER: f64 = 0.5;
+/// What steers the search for narrow places.
+struct ProximitySettings {
+    /// Longest step over the distance to the border that faces it: the triangle with a right angle at its end has 27°.
+    max_step_over_gap: f64,
+    /// The same for quads, whose cells have sides of two steps.
+    max_step_over_gap_quads: f64,
+    /// The least step that facing borders demand, over the size, where no `min_size` is written: a long gap is not filled with
+    /// steps as short as it is wide.
+    min_step_over_size: f64,
+    /// Steps that face each other over less than that, up to which they are a narrow place of its own and no gap along a border:
+    /// there steps get as short as it is narrow, for lengths grow from it at once.
+    max_steps_of_place: usize,
+    /// How much shorter such steps get at a time: what is long shows as more of them.
+    shrink_of_place: f64,
+    /// The shortest of them, in tolerances.
+    min_step_of_place: f64,
+    /// Steps that are longer than allowed by less than this factor stay.
+    slack: f64,
+    /// Length of half a step over the step, a little less than a half.
+    half: f64,
+    /// Steps that cross are halved down to so many tolerances; then the curves themselves meet.
+    min_crossing: f64,
+    /// Cosine of the angle from which two edges at a node are no corner: 150°.
+    smooth_cosine: f64,
+    /// Share of the distance between the two legs of a corner up to which a gap is that of the corner.
+    corner_share: f64,
+}
+
+const SETTINGS: ProximitySettings = ProximitySettings {
+    max_step_over_gap: 2.0,
+    max_step_over_gap_quads: 1.0,
+    min_step_over_size: 1.0 / 16.0,
+    max_steps_of_place: 24,
+    shrink_of_place: 0.3,
+    min_step_of_place: 16.0,
+    slack: 1.15,
+    half: 0.45,
+    min_crossing: 4.0,
+    smooth_cosine: -0.866,
+    corner_share: 0.5,
+};
 
 /// Places of all free faces where steps have to be shorter.
-pub fn find(made: &FaceInput) -> Vec<Narrow> {
-    let faces = &made.layout.faces;
-    let found = par::map(faces.len(), |f| if faces[f].free { of_face(made, &faces[f]) } else { Vec::new() });
+pub fn find(context: &FaceInput) -> Vec<Narrow> {
+    let faces = &context.layout.faces;
+    let found = par::map(faces.len(), |f| if faces[f].free { of_face(context, &faces[f]) } else { Vec::new() });
     found.into_iter().flatten().collect()
 }
 
-fn of_face(made: &FaceInput, face: &Face) -> Vec<Narrow> {
-    let Some((border, _, outline)) = outlined(made, face) else { return Vec::new() };
-    let gaze = ProximityScan { made, face, outline: &outline, ids: &border.ids, bits: bits(made, face) };
-    let mut found = gaze.polygon();
+fn of_face(context: &FaceInput, face: &Face) -> Vec<Narrow> {
+    let Some((border, _, outline)) = outlined(context, face) else { return Vec::new() };
+    let scan = ProximityScan { context, face, outline: &outline, ids: &border.ids, steps: steps(context, face) };
+    let mut found = scan.narrow();
     if face.halved > 0 {
-        found.extend(crate::mesh::size::girth::find(made, face));
+        found.extend(crate::mesh::size::girth::find(context, face));
     }
     if face.takes_quads()
-        && let Some(halves) = crate::mesh::chart::halved::halved(made, face, &border, &outline)
+        && let Some(halves) = crate::mesh::chart::halved::halved(context, face, &border, &outline)
     {
         let ids: Vec<u32> = halves.of.iter().map(|n| border.ids[*n as usize]).collect();
-        found.extend(ProximityScan { outline: &halves.outline, ids: &ids, ..gaze }.crossings());
+        found.extend(ProximityScan { outline: &halves.outline, ids: &ids, ..scan }.crossings());
     }
     found
 }
 
-/// The least step that facing borders ask for on a face, model units.
-pub fn floor(made: &FaceInput, face: &Face) -> f64 {
-    made.input.plan.settings.min_size.map_or(LEAST * face.size.0, |s| s.0).max(made.input.tolerance.point)
+/// The least step that facing borders demand on a face, model units.
+pub fn floor(context: &FaceInput, face: &Face) -> f64 {
+    context.input.plan.settings.min_size.map_or(SETTINGS.min_step_over_size * face.size.0, |s| s.0).max(context.input.tolerance.point)
 }
 
-/// The piece of a segment between two nodes.
+/// A step: the piece of a segment between two nodes.
 #[derive(Clone, Copy)]
-struct Bit {
+struct BorderStep {
     segment: usize,
     /// Number in the mesh of its node at the lower fraction.
     first: u32,
     f: (f64, f64),
 }
 
-/// The pieces of a face's segments by their ends, lower node first; of quads two steps as one as well.
-fn bits(made: &FaceInput, face: &Face) -> BTreeMap<(u32, u32), Bit> {
-    let mut bits = BTreeMap::new();
+/// The steps of a face's segments by their ends, lower node first; of quads two steps as one as well.
+fn steps(context: &FaceInput, face: &Face) -> BTreeMap<(u32, u32), BorderStep> {
+    let mut steps = BTreeMap::new();
     for segment in face.segments() {
-        let ids = made.nodes.of_segment(made.layout, segment, false);
-        let at = made.nodes.fractions(segment, false);
-        for step in 1..=if face.takes_quads() { 2 } else { 1 } {
-            for k in 0..ids.len().saturating_sub(step) {
+        let ids = context.nodes.of_segment(context.layout, segment, false);
+        let at = context.nodes.fractions(segment, false);
+        for span in 1..=if face.takes_quads() { 2 } else { 1 } {
+            for k in 0..ids.len().saturating_sub(span) {
                 job::poll();
-                let (a, b) = (ids[k], ids[k + step]);
-                bits.entry((a.min(b), a.max(b))).or_insert(Bit { segment, first: a, f: (at[k], at[k + step]) });
+                let (a, b) = (ids[k], ids[k + span]);
+                steps.entry((a.min(b), a.max(b))).or_insert(BorderStep { segment, first: a, f: (at[k], at[k + span]) });
             }
         }
     }
-    bits
+    steps
 }
 
-/// A divided border that is looked at.
+/// The divided border of a face.
 struct ProximityScan<'a> {
-    made: &'a FaceInput<'a>,
+    context: &'a FaceInput<'a>,
     face: &'a Face,
     outline: &'a Outline,
     /// Numbers of its nodes in the mesh.
     ids: &'a [u32],
-    bits: BTreeMap<(u32, u32), Bit>,
+    steps: BTreeMap<(u32, u32), BorderStep>,
 }
 
 /// A corner of the border, with half the tangent of half its angle.
-struct Corner {
+struct BorderCorner {
     p: DVec3,
     opens: f64,
 }
 
 impl ProximityScan<'_> {
-    fn polygon(&self) -> Vec<Narrow> {
+    /// Where steps cross, else where they are long for what faces them.
+    fn narrow(&self) -> Vec<Narrow> {
         let edges: Vec<[u32; 2]> = self.outline.edges().collect();
         match points(&self.outline.xy, &edges) {
             Ok(all) if !self.face.method.is_coarse() => self.facing(&all),
@@ -137,9 +155,9 @@ impl ProximityScan<'_> {
         }
     }
 
-    fn bit(&self, [a, b]: [u32; 2]) -> Option<Bit> {
+    fn step(&self, [a, b]: [u32; 2]) -> Option<BorderStep> {
         let [a, b] = [self.ids[a as usize], self.ids[b as usize]];
-        self.bits.get(&(a.min(b), a.max(b))).copied()
+        self.steps.get(&(a.min(b), a.max(b))).copied()
     }
 
     /// Of two edges that cross or touch, those that are not much shorter than the other.
@@ -157,7 +175,7 @@ impl ProximityScan<'_> {
                 if meet(xy, *one, *other) {
                     let lengths = [one, other].map(|e| self.outline.length(*e));
                     let longer = lengths[0].max(lengths[1]);
-                    let halved = [one, other].into_iter().zip(lengths).filter(|(_, l)| *l > HALF * longer);
+                    let halved = [one, other].into_iter().zip(lengths).filter(|(_, l)| *l > SETTINGS.half * longer);
                     found.extend(halved.filter_map(|(e, length)| self.half(*e, length)));
                 }
             }
@@ -166,18 +184,18 @@ impl ProximityScan<'_> {
     }
 
     fn half(&self, edge: [u32; 2], length: f64) -> Option<Narrow> {
-        let bit = self.bit(edge).filter(|_| length > TOUCHING * self.made.input.tolerance.point)?;
-        Some(Narrow { segment: bit.segment, f: 0.5 * (bit.f.0 + bit.f.1), size: HALF * length, must: true })
+        let step = self.step(edge).filter(|_| length > SETTINGS.min_crossing * self.context.input.tolerance.point)?;
+        Some(Narrow { segment: step.segment, f: 0.5 * (step.f.0 + step.f.1), size: SETTINGS.half * length, crossing: true })
     }
 
     /// Steps that are long for what stands over them.
     fn facing(&self, all: &Triangles) -> Vec<Narrow> {
         let p = &self.outline.p;
         let kept = inside(all, self.outline);
-        let floor = floor(self.made, self.face);
-        let point = SHORTEST * self.made.input.tolerance.point;
-        let deepest = if self.made.input.plan.settings.min_size.is_some() { floor } else { point.min(floor) };
-        let across = if self.face.elements == Elements::Triangles { ACROSS } else { ACROSS_QUADS };
+        let floor = floor(self.context, self.face);
+        let point = SETTINGS.min_step_of_place * self.context.input.tolerance.point;
+        let deepest = if self.context.input.plan.settings.min_size.is_some() { floor } else { point.min(floor) };
+        let across = if self.face.elements == Elements::Triangles { SETTINGS.max_step_over_gap } else { SETTINGS.max_step_over_gap_quads };
         let mut close: Vec<(u32, [u32; 2], f64)> = Vec::new();
         for t in (0..kept.len()).filter(|t| kept[*t]) {
             job::poll();
@@ -190,7 +208,7 @@ impl ProximityScan<'_> {
                 let (over, edge) = (c[k], [c[(k + 1) % 3], c[(k + 2) % 3]]);
                 let [a, b] = edge.map(|n| p[n as usize]);
                 let gap = distance_to_segment(p[over as usize], a, b);
-                if gap > 0.0 && self.outline.length(edge) > SLACK * (across * gap).max(deepest) {
+                if gap > 0.0 && self.outline.length(edge) > SETTINGS.slack * (across * gap).max(deepest) {
                     close.push((over, edge, gap));
                 }
             }
@@ -227,23 +245,23 @@ impl ProximityScan<'_> {
         }
         let mut found = Vec::new();
         // Each step is seen from both sides of the gap.
-        let deep = narrow.iter().filter(|n| across * n.3 < floor).count() <= 2 * FEW;
+        let deep = narrow.iter().filter(|n| across * n.3 < floor).count() <= 2 * SETTINGS.max_steps_of_place;
         for (over, [a, b], t, gap) in narrow {
             let length = self.outline.length([a, b]);
-            let least = if deep { deepest.max(floor.min(DEEPER * length)) } else { floor };
+            let least = if deep { deepest.max(floor.min(SETTINGS.shrink_of_place * length)) } else { floor };
             let size = (across * gap).max(least);
-            let mut ask = |edge: [u32; 2], t: f64| {
-                if self.outline.length(edge) > SLACK * size
-                    && let Some(bit) = self.bit(edge)
+            let mut shorten = |edge: [u32; 2], t: f64| {
+                if self.outline.length(edge) > SETTINGS.slack * size
+                    && let Some(step) = self.step(edge)
                 {
-                    // Bits run along their segment, edges either way.
-                    let t = if bit.first == self.ids[edge[0] as usize] { t } else { 1.0 - t };
-                    found.push(Narrow { segment: bit.segment, f: bit.f.0 + (bit.f.1 - bit.f.0) * t, size, must: false });
+                    // Steps run along their segment, edges either way.
+                    let t = if step.first == self.ids[edge[0] as usize] { t } else { 1.0 - t };
+                    found.push(Narrow { segment: step.segment, f: step.f.0 + (step.f.1 - step.f.0) * t, size, crossing: false });
                 }
             };
-            ask([a, b], t);
+            shorten([a, b], t);
             for other in &at[over as usize] {
-                ask([over, *other], 0.0);
+                shorten([over, *other], 0.0);
             }
         }
         found
@@ -261,7 +279,7 @@ impl ProximityScan<'_> {
 
     /// Nodes whose edges meet at an angle. At a pole the border goes on at another place of the same node; where that is the other side
     /// of a seam there is no corner.
-    fn corners(&self) -> Vec<Corner> {
+    fn corners(&self) -> Vec<BorderCorner> {
         let p = &self.outline.p;
         let at = self.edges_at();
         let mut found = Vec::new();
@@ -271,13 +289,13 @@ impl ProximityScan<'_> {
             let mut others: Vec<u32> = own.iter().chain(across).filter(|o| !here(o)).map(|o| self.ids[*o as usize]).collect();
             others.sort_unstable();
             others.dedup();
-            let node = |id: u32| self.made.points[id as usize];
+            let node = |id: u32| self.context.points[id as usize];
             let ways: Vec<DVec3> = others.iter().filter_map(|o| (node(*o) - p[n]).try_normalize()).collect();
             let pairs = (0..ways.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
             let cosine = pairs.map(|(i, j)| ways[i].dot(ways[j])).fold(-1.0, f64::max);
-            if cosine > SMOOTH {
+            if cosine > SETTINGS.smooth_cosine {
                 let opens = ((1.0 - cosine).max(0.0) / (1.0 + cosine)).sqrt().min(1.0);
-                found.push(Corner { p: p[n], opens: CORNER * opens });
+                found.push(BorderCorner { p: p[n], opens: SETTINGS.corner_share * opens });
             }
         }
         found

@@ -1,4 +1,4 @@
-//! What is to be said about the rules of a mesh.
+//! Remarks on a mesh and on the rules of its plan.
 
 use crate::model::fault::ModelFault;
 use glam::DVec3;
@@ -9,10 +9,10 @@ use crate::mesh::border::lost::Lost;
 use crate::mesh::border::touch::{Kind, Touch};
 use crate::mesh::request::fault::{Cure, MeshFault};
 use crate::mesh::request::input::Input;
-use crate::mesh::size::sizing::{FREE_ONLY, KEYS, free_only_origin};
+use crate::mesh::size::rule_effects::{FREE_ONLY, KEYS, free_only_origin};
 use crate::model::fault::Touching;
 
-/// What is to be said about a mesh and the rules of its plan, by their places in it.
+/// A remark on a mesh or on the rules of its plan, by their places in it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Remark {
     /// W701: a rule without effect.
@@ -43,7 +43,7 @@ pub enum Remark {
         at: DVec3,
         /// Surface of its face.
         surface: String,
-        /// How many faces have such.
+        /// How many faces have such angles.
         faces: usize,
         /// The setting to change there.
         cure: Cure,
@@ -51,7 +51,7 @@ pub enum Remark {
 }
 
 impl Remark {
-    /// What is to be said of the sharp angles of two parts of a mesh: the least is told.
+    /// The remark on the sharp angles of two parts of a mesh: that on the least.
     pub fn sharper(self, other: Self) -> Self {
         match (self, other) {
             (Self::Sharp { angle: a, at, surface, faces: n, cure }, Self::Sharp { angle: b, faces: m, .. }) if a <= b => {

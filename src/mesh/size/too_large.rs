@@ -1,4 +1,4 @@
-//! What a mesh would be too large for, told before anything is divided or allocated for it.
+//! Meshes that would be too large, refused before anything is divided or allocated for them.
 
 use crate::base::fault::{Fault, Result};
 use crate::base::limits::MESH_STEPS;
@@ -14,18 +14,18 @@ use crate::mesh::request::work::too_many;
 use crate::mesh::size::border_spacing::BorderSpacing;
 use crate::mesh::size::sizing::{Decision, Sizing};
 
-/// E217 where a segment takes more steps than one may, at what asks for them.
+/// E217 where a segment takes more steps than one may, at the expression that demands them.
 pub fn refuse_steps(input: &Input, layout: &Layout, sizing: &Sizing) -> Result<()> {
-    let asked = |d: &Decision| d.count.map_or(d.demand, |c| c.0).max(d.least);
-    match sizing.decisions.iter().position(|d| asked(d) > MESH_STEPS) {
+    let demanded = |d: &Decision| d.count.map_or(d.demand, |c| c.0).max(d.least);
+    match sizing.decisions.iter().position(|d| demanded(d) > MESH_STEPS) {
         Some(k) => Err(too_many_steps(input, of_segment(input, layout, sizing, k))),
         None => Ok(()),
     }
 }
 
-/// E217 where the bends of faces alone ask for more steps along borders than a mesh may have, before those steps are carried on
+/// E217 where the bends of faces alone demand more steps along borders than a mesh may have, before those steps are carried on
 /// to neighbours: `spacings` and the size of each segment. A free face has an element at each step of its border, but few where
-/// it is sparing.
+/// its method is coarse.
 pub fn refuse_bends(input: &Input, layout: &Layout, spacings: &[BorderSpacing], size: &[f64]) -> Result<()> {
     let plan = input.plan;
     let Some(limit) = plan.settings.chord_error.or(plan.settings.angle_error) else { return Ok(()) };
@@ -56,10 +56,10 @@ pub(crate) fn of_segment(input: &Input, layout: &Layout, sizing: &Sizing, k: usi
         angle.or(plan.settings.chord_error).map(|limit| limit.1)
     };
     let even = ((layout.length(k) - input.tolerance.point) / decision.size.0 - WHOLE_NUMBER).ceil();
-    let asked = decision.count.map_or(decision.demand, |c| c.0);
+    let demanded = decision.count.map_or(decision.demand, |c| c.0);
     if decision.least > 1
         && f64::from(decision.least) >= even
-        && decision.least >= asked
+        && decision.least >= demanded
         && let Some(limit) = by_bends()
     {
         return limit;

@@ -1,4 +1,4 @@
-//! Mapped faces that are better made freely: where a short piece of border would run through the whole face as a row of that
+//! Mapped faces that are better meshed freely: where a short piece of border would run through the whole face as a row of that
 //! width, and where their even rows meet borders of a free face that have, or need, much shorter steps.
 
 use crate::mesh::border::layout::{Face, FaceSide, Layout, Uneven};
@@ -7,21 +7,21 @@ use crate::mesh::request::methods::{Elements, Method};
 use crate::mesh::size::sizing::Sizing;
 
 /// A step next to one shorter than this share of it makes angles below 7°.
-const SHARE: f64 = 0.125;
+const MIN_STEP_RATIO: f64 = 0.125;
 
-/// Faces of triangles, mapped because nothing says otherwise, that are better made freely. What is written stays.
-pub fn find(layout: &Layout, (nodes, near): (&Nodes, f64), sizing: &Sizing) -> Vec<(usize, Uneven)> {
+/// Faces of triangles, mapped because no method is written, that are better meshed freely. What is written stays.
+pub fn find(layout: &Layout, nodes: &Nodes, near: f64, sizing: &Sizing) -> Vec<(usize, Uneven)> {
     let mut required_on_mapped: Vec<Option<f64>> = vec![None; layout.pieces.segments.len()];
     for (k, spacing) in sizing.required_on_mapped.iter().enumerate() {
         let least = spacing.as_ref().map_or(f64::INFINITY, |spacing| spacing.least());
-        required_on_mapped[k] = (least + near < SHARE * layout.length(k) / f64::from(nodes.count(k))).then_some(least);
+        required_on_mapped[k] = (least + near < MIN_STEP_RATIO * layout.length(k) / f64::from(nodes.count(k))).then_some(least);
     }
     let of = |face: &Face| {
         if face.free || face.method != Method::Auto || face.elements != Elements::Triangles || counted(face, sizing) {
             return None;
         }
         let beside = face.segments().filter_map(|k| required_on_mapped[k]).reduce(f64::min);
-        row(face, (nodes, near)).map(Uneven::Row).or(beside.map(Uneven::Beside))
+        row(face, nodes, near).map(Uneven::Row).or(beside.map(Uneven::Beside))
     };
     layout.faces.iter().enumerate().filter_map(|(f, face)| Some((f, of(face)?))).collect()
 }
@@ -33,17 +33,17 @@ fn counted(face: &Face, sizing: &Sizing) -> bool {
 }
 
 /// The shortest step of a side next to much longer ones.
-fn row(face: &Face, (nodes, near): (&Nodes, f64)) -> Option<f64> {
+fn row(face: &Face, nodes: &Nodes, near: f64) -> Option<f64> {
     let n = face.sides.len();
     let steps = |side: &FaceSide| -> Vec<f64> { side.uses.iter().map(|u| (u.s.1 - u.s.0) / f64::from(nodes.count(u.segment))).collect() };
     let all: Vec<Vec<f64>> = face.sides.iter().map(steps).collect();
     let longest = |k: usize| all[k].iter().copied().fold(0.0, f64::max);
     let mut found: Option<f64> = None;
     for (k, own) in all.iter().enumerate() {
-        // A row that is narrow among rows as long is what limits ask for.
+        // A row that is narrow among rows as long is what limits demand.
         let beside = [(k + 1) % n, (k + n - 1) % n].map(longest);
         let across = beside.into_iter().filter(|step| *step > 0.0).fold(longest(k), f64::min);
-        found = own.iter().copied().filter(|step| *step + near < SHARE * across).chain(found).reduce(f64::min);
+        found = own.iter().copied().filter(|step| *step + near < MIN_STEP_RATIO * across).chain(found).reduce(f64::min);
     }
     found
 }

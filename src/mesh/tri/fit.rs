@@ -13,7 +13,8 @@ use crate::mesh::chart::affine::Chart;
 use crate::mesh::chart::face_input::{FaceInput, outlined};
 use crate::mesh::chart::outline::Outline;
 use crate::mesh::chart::parametric_surface::{SizeField, UniformSize};
-use crate::mesh::deviation::{poles, triangle};
+use crate::mesh::deviation::edge_length::{self, EdgePlace};
+use crate::mesh::deviation::poles;
 use crate::mesh::request::decider::{Decider, Tally, Why};
 use crate::mesh::request::fault::{MeshFault, MeshLimit};
 use crate::mesh::request::limits::Limits;
@@ -217,12 +218,12 @@ impl Fit<'_> {
     pub(crate) fn background(&self, limits: &Limits) -> Background {
         let whole = self.outline.xy.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), xy| (l.min(*xy), h.max(*xy)));
         let size = self.face.size.0 * SPACING;
-        let surface = (self.surface, self.chart.power_form());
         let tangents = |at: DVec2| self.chart.tangents(at.into());
         let wanted = |at: DVec2| {
-            let jet = self.surface.jet_by(self.chart.power_form(), at.x, at.y);
-            let plain = triangle::wanted(&jet, limits.chord, limits.angle).min(size / FILLED);
-            FILLED * limits.chord.map_or(plain, |limit| triangle::likely(surface, (at, &jet), jet.du, (limit, plain)))
+            let jet = self.chart.evaluator().jet(at.x, at.y);
+            let plain = edge_length::wanted(&jet, limits.chord, limits.angle).min(size / FILLED);
+            let edge = EdgePlace { at, jet: &jet, along: jet.du };
+            FILLED * limits.chord.map_or(plain, |limit| edge_length::sampled(self.chart.evaluator(), edge, limit, plain))
         };
         let of = |xy: DVec2| {
             let at = DVec2::from(self.chart.uv(xy));

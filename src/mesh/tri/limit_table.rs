@@ -169,7 +169,7 @@ fn leaning(chart: &Chart, (xy, p, beside): ([DVec2; 3], [DVec3; 3], f64), load: 
         }
         Some(limit) if load.chord > lean && load.chord <= 1.0 => {
             let ends = poles::sides(&|at| chart.tangents(at.into()), xy.map(|xy| DVec2::from(chart.uv(xy)))).map(Some);
-            let farthest = sides::distance((chart.surface(), chart.power_form()), ends, p, limit - beside);
+            let farthest = sides::distance(chart.evaluator(), ends, p, limit - beside);
             load.chord.max((farthest + beside) / limit).min(load.chord / lean)
         }
         _ => load.chord / lean.max(UPRIGHT),
@@ -205,7 +205,7 @@ fn load_with_sides(chart: &Chart, triangulation: &Triangulation, t: u32, limits:
     // Borders keep the limit by themselves.
     let locked = triangulation.locked.get(t as usize).map_or(0, |bits| *bits);
     (0..3).filter(|k| locked >> k & 1 == 1).for_each(|k| ends[k] = None);
-    let farthest = sides::distance((chart.surface(), chart.power_form()), ends, p, limit);
+    let farthest = sides::distance(chart.evaluator(), ends, p, limit);
     LimitRatio { chord: found.chord.max(farthest / limit), ..found }
 }
 
@@ -218,10 +218,9 @@ pub fn load_of(chart: &Chart, (xy, p): ([DVec2; 3], [DVec3; 3]), limits: &Limits
 /// Points are up to `beside` off the surface.
 fn of_places(chart: &Chart, (xy, p, beside): ([DVec2; 3], [DVec3; 3], f64), limits: &Limits) -> LimitRatio {
     let places = xy.map(|xy| DVec2::from(chart.uv(xy)));
-    let surface = (chart.surface(), chart.power_form());
     let chord = limits.chord.map_or(0.0, |limit| {
-        let under = under(&|at| chart.tangents(at.into()), places);
-        (triangle::chord(surface, under, p, limit - beside) + beside) / limit
+        let (first, second) = under(&|at| chart.tangents(at.into()), places);
+        (triangle::chord(chart.evaluator(), first, second, p, limit - beside) + beside) / limit
     });
     LimitRatio { chord, angle: turned(chart, (xy, places), limits) }
 }
@@ -244,7 +243,7 @@ pub fn likely(chart: &Chart, (xy, p): ([DVec2; 3], [DVec3; 3]), limits: &Limits)
     let places = xy.map(|xy| DVec2::from(chart.uv(xy)));
     let chord = limits.chord.map_or(0.0, |limit| {
         let (first, second) = under(&|at| chart.tangents(at.into()), places);
-        let off = |uv| triangle::sampled(&|uv: DVec2| chart.surface().point_by(chart.power_form(), uv.x, uv.y), uv, p);
+        let off = |uv| triangle::sampled(&|uv: DVec2| chart.evaluator().point(uv.x, uv.y), uv, p);
         off(first).max(second.map_or(0.0, off)) / limit
     });
     chord.max(turned(chart, (xy, places), limits))

@@ -4,6 +4,7 @@ use glam::{DVec2, DVec3};
 
 use crate::base::job;
 use crate::base::tolerance::EPSILON;
+use crate::surface::core::evaluator::Evaluator;
 use crate::surface::core::power_form::PowerForm;
 use crate::surface::core::surface::Surface;
 use crate::surface::data::jet::Jet2;
@@ -81,8 +82,7 @@ pub(crate) trait Footing {
 
 /// A surface held inside ranges of u and v, with its second derivatives.
 struct Within<'a> {
-    surface: &'a Surface,
-    quick: Option<&'a PowerForm>,
+    evaluator: Evaluator<'a>,
     u: (f64, f64),
     v: (f64, f64),
 }
@@ -92,13 +92,13 @@ impl Footing for Within<'_> {
     const TRIES: usize = 12;
 
     fn jet(&self, uv: DVec2) -> Jet2 {
-        self.surface.jet_by(self.quick, uv.x, uv.y)
+        self.evaluator.jet(uv.x, uv.y)
     }
 
     fn hold(&self, uv: DVec2) -> DVec2 {
         let held = DVec2::new(uv.x.clamp(self.u.0, self.u.1), uv.y.clamp(self.v.0, self.v.1));
         let over = held.x + held.y - 1.0;
-        let slant = self.surface.domain() == Domain::Triangle && over > 0.0;
+        let slant = self.evaluator.surface().domain() == Domain::Triangle && over > 0.0;
         if slant { (held - 0.5 * over).clamp(DVec2::ZERO, DVec2::ONE) } else { held }
     }
 
@@ -128,34 +128,28 @@ impl Footing for Within<'_> {
 }
 
 /// Distance of a point from a surface near (u, v), model units, with the place of the foot: Newton steps with second
-/// derivatives where they help, held inside the ranges of u and v; with the surface made ready, where it can be.
-pub fn foot_within(
-    (surface, quick): (&Surface, Option<&PowerForm>),
-    p: DVec3,
-    guess: (f64, f64),
-    u: (f64, f64),
-    v: (f64, f64),
-) -> (f64, (f64, f64)) {
-    let (uv, distance) = Within { surface, quick, u, v }.foot(p, guess.into());
+/// derivatives where they help, held inside the ranges of u and v.
+pub fn foot_within(evaluator: Evaluator, p: DVec3, guess: (f64, f64), u: (f64, f64), v: (f64, f64)) -> (f64, (f64, f64)) {
+    let (uv, distance) = Within { evaluator, u, v }.foot(p, guess.into());
     (distance, uv.into())
 }
 
 /// Feet on a surface, held in the parts of (u, v) where it is.
-pub(crate) struct Whole<'a>(&'a Surface, Option<&'a PowerForm>);
+struct Whole<'a>(Evaluator<'a>);
 
 impl Footing for Whole<'_> {
     fn jet(&self, uv: DVec2) -> Jet2 {
-        self.0.jet_by(self.1, uv.x, uv.y)
+        self.0.jet(uv.x, uv.y)
     }
 
     fn hold(&self, uv: DVec2) -> DVec2 {
-        self.0.hold(uv)
+        self.0.surface().hold(uv)
     }
 }
 
-/// The foot of a point near a guess, with its distance; by the surface made ready, where it is.
-pub(crate) fn foot((surface, quick): (&Surface, Option<&PowerForm>), p: DVec3, guess: DVec2) -> (DVec2, f64) {
-    Whole(surface, quick).foot(p, guess)
+/// The foot of a point near a guess, with its distance.
+pub(crate) fn foot(evaluator: Evaluator, p: DVec3, guess: DVec2) -> (DVec2, f64) {
+    Whole(evaluator).foot(p, guess)
 }
 
 impl Surface {
@@ -163,22 +157,30 @@ impl Surface {
     ///
     /// Beyond 0…1 where the surface closes and the border crosses its seam.
     pub fn border_place(&self, k: usize, fraction: f64) -> Option<(f64, f64)> {
-        self.border_place_by(None, k, fraction)
+        self.evaluator().border_place(k, fraction)
     }
 
-    /// The same with the surface made ready, where it is.
-    pub fn border_place_by(&self, quick: Option<&PowerForm>, k: usize, fraction: f64) -> Option<(f64, f64)> {
-        let Side::Chain { chain, .. } = self.side(k) else { return None };
+    /// The same with its power form, where it has one.
+    pub fn border_place_by(&self, power_form: Option<&PowerForm>, k: usize, fraction: f64) -> Option<(f64, f64)> {
+        Evaluator::new(self, power_form).border_place(k, fraction)
+    }
+}
+
+impl Evaluator<'_> {
+    /// See [`Surface::border_place`].
+    pub fn border_place(self, k: usize, fraction: f64) -> Option<(f64, f64)> {
+        let surface = self.surface();
+        let Side::Chain { chain, .. } = surface.side(k) else { return None };
         let p = chain.point(fraction);
-        let course = self.parts().trim.as_ref().and_then(|trim| trim.courses.get(k));
+        let course = surface.parts().trim.as_ref().and_then(|trim| trim.courses.get(k));
         match course {
-            _ if self.is_flat() => self.flat_uv(p),
+            _ if surface.is_flat() => surface.flat_uv(p),
             Some(TrimCurve::Line(a, b)) => {
-                let t = self.side_parameter(k, fraction);
+                let t = surface.side_parameter(k, fraction);
                 Some((a.0 + (b.0 - a.0) * t, a.1 + (b.1 - a.1) * t))
             }
             Some(TrimCurve::Pcurve(pcurve)) => {
-                let uv = foot((self, quick), p, pcurve.guess(fraction)).0;
+                let uv = foot(self, p, pcurve.guess(fraction)).0;
                 Some((uv.x, uv.y))
             }
             None => None,

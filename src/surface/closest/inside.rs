@@ -103,7 +103,7 @@ impl Surface {
         let guess = a.lerp(b, 0.5);
         let at = match self.flat_uv(chain.point(middle)) {
             Some((u, v)) => DVec2::new(u, v),
-            None => foot((self, None), chain.point(middle), guess).0,
+            None => foot(self.evaluator(), chain.point(middle), guess).0,
         };
         let first = self.turn_of(chain, ((fa, a), (middle, at)), p, (deep - 1, left));
         first + self.turn_of(chain, ((middle, at), (fb, b)), p, (deep - 1, left))

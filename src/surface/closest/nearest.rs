@@ -16,7 +16,7 @@ use crate::network::Chain;
 use crate::surface::closest::descent::{Local, descend_within};
 use crate::surface::closest::samples::{Samples, Start};
 use crate::surface::closest::swept_profile::SweptProfile;
-use crate::surface::core::power_form::PowerForm;
+use crate::surface::core::evaluator::PreparedSurface;
 use crate::surface::core::surface::Surface;
 use crate::surface::data::jet::Jet2;
 use crate::surface::data::kind::Domain;
@@ -46,10 +46,10 @@ pub struct Nearest {
     kept: OnceLock<Vec<bool>>,
 }
 
-/// A surface sampled, and made ready for many evaluations where that can be.
-#[derive(Clone, Debug, Default)]
+/// The samples of a surface, with the surface prepared for many evaluations; a plane has no samples.
+#[derive(Clone, Debug)]
 struct Sampled {
-    quick: Option<PowerForm>,
+    prepared: PreparedSurface,
     samples: Samples,
 }
 
@@ -68,14 +68,14 @@ impl Nearest {
 
     fn sampled(&self) -> &Sampled {
         self.sampled.get_or_init(|| match self.whole.domain() {
-            Domain::Square | Domain::Triangle => Sampled { samples: Samples::new(&self.whole), quick: self.whole.power_form() },
-            _ => Sampled::default(),
+            Domain::Square | Domain::Triangle => Sampled { samples: Samples::new(&self.whole), prepared: self.whole.prepared() },
+            _ => Sampled { samples: Samples::default(), prepared: PreparedSurface::plain(&self.whole) },
         })
     }
 
     /// Point and derivatives at a place of the unit square.
     fn jet(&self, x: f64, y: f64) -> Jet2 {
-        self.sampled().quick.as_ref().map_or_else(|| self.whole.square_jet(x, y), |quick| quick.jet(x, y))
+        self.sampled().prepared.evaluator().square_jet(x, y)
     }
 
     /// The surface.

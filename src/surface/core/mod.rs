@@ -1,6 +1,7 @@
 //! A surface of any kind: its shape with borders, kinks and loops, its bounds, and what is made of it for many evaluations.
 
 pub mod enclosure;
+pub mod evaluator;
 pub mod evened;
 pub mod joined;
 pub mod plane;

@@ -10,6 +10,7 @@ use glam::{DVec2, DVec3, DVec4};
 
 use crate::base::tolerance::{BEFORE_KNOT, EPSILON};
 use crate::base::work;
+use crate::surface::core::evaluator::Evaluator;
 use crate::surface::core::shape::Shape;
 use crate::surface::core::surface::Surface;
 use crate::surface::data::jet::Jet2;
@@ -75,21 +76,17 @@ impl Surface {
 impl Surface {
     /// The point.
     pub fn point_by(&self, quick: Option<&PowerForm>, u: f64, v: f64) -> DVec3 {
-        quick.map_or_else(|| self.point(u, v), |quick| quick.point(u, v))
+        Evaluator::new(self, quick).point(u, v)
     }
 
     /// Point, ∂/∂u and ∂/∂v.
     pub fn tangents_by(&self, quick: Option<&PowerForm>, u: f64, v: f64) -> [DVec3; 3] {
-        let plain = || {
-            let jet = self.jet(u, v);
-            [jet.p, jet.du, jet.dv]
-        };
-        quick.map_or_else(plain, |quick| quick.tangents(u, v))
+        Evaluator::new(self, quick).tangents(u, v)
     }
 
     /// Point and all derivatives.
     pub fn jet_by(&self, quick: Option<&PowerForm>, u: f64, v: f64) -> Jet2 {
-        quick.map_or_else(|| self.jet(u, v), |quick| quick.jet(u, v))
+        Evaluator::new(self, quick).jet(u, v)
     }
 }
 

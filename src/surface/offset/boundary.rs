@@ -227,7 +227,7 @@ impl Boundary {
                 let own = if before == (speed > 0.0) { chain.jet_before(f) } else { chain.jet(f) };
                 let uv = match self.surface.flat_uv(own.p) {
                     Some(uv) => uv.into(),
-                    None => foot((&self.surface, None), own.p, pcurve.guess(f)).0,
+                    None => foot(self.surface.evaluator(), own.p, pcurve.guess(f)).0,
                 };
                 let jet: Jet2 = self.surface.jet(uv.x, uv.y);
                 let d1 = own.d1 * speed;

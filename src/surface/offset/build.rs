@@ -61,7 +61,7 @@ impl Carrier<'_> {
     /// The place on the offset above a place of the surface.
     fn place(&self, uv: DVec2) -> DVec2 {
         let p = self.below.point(uv.x, uv.y) + self.below.normal(uv.x, uv.y) * self.distance;
-        let (near, off) = foot((self.ground, None), p, uv);
+        let (near, off) = foot(self.ground.evaluator(), p, uv);
         if off <= self.tolerance.point {
             return near;
         }

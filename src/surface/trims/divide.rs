@@ -157,7 +157,7 @@ fn graph(base: &Surface, all: &[Piece], tolerance: &Tolerance) -> (Vec<Edge>, Pl
         let place = |f: f64| match (&piece.course, piece.own_chain()) {
             (TrimCurve::Pcurve(pcurve), Some(chain)) => {
                 let f = pcurve.fraction(f);
-                foot::foot((base, None), chain.point(f), pcurve.guess(f)).0
+                foot::foot(base.evaluator(), chain.point(f), pcurve.guess(f)).0
             }
             (course, _) => {
                 let places = course.places();

@@ -59,7 +59,7 @@ impl Pcurve {
         let widest = Cell::new(0.0_f64);
         let land = |f: f64, guess: DVec2| -> Result<DVec2, Off> {
             let p = chain.point(f);
-            let (uv, distance) = foot((surface, None), p, guess);
+            let (uv, distance) = foot(surface.evaluator(), p, guess);
             if distance > near {
                 return Err(Off { at: p, distance });
             }
@@ -85,7 +85,7 @@ impl Pcurve {
             }
             let before = |k: f64| {
                 let f = self.fraction(if last { 1.0 - k * POLE_STEP } else { k * POLE_STEP });
-                foot((surface, None), chain.point(f), self.guess(f)).0
+                foot(surface.evaluator(), chain.point(f), self.guess(f)).0
             };
             let held = surface.hold(end);
             let jet = surface.jet(held.x, held.y);

@@ -201,7 +201,7 @@ impl Carrier<'_> {
         let found = DVec2::new(best.uv.0, best.uv.1);
         let Some(near) = near else { return found };
         // The sheet that was followed, unless another one is truly nearer.
-        let (uv, distance) = foot::foot((self.surface, None), p, near);
+        let (uv, distance) = foot::foot(self.surface.evaluator(), p, near);
         if distance <= best.distance * (1.0 + NUDGE) + EPSILON { uv } else { found }
     }
 

@@ -53,7 +53,7 @@ builtins! {
 pub(crate) fn sections(cx: &mut Cx, of: &MeshValue, by: &Plane) -> Result<Vec<Chain>, Halt> {
     let tolerance = cx.tolerance()?;
     let mesh = cx.mesh(of)?;
-    let rows = section(&mesh, (by.at, by.normal), tolerance.rounding, tolerance.point);
+    let rows = section(&mesh, by.at, by.normal, tolerance.rounding, tolerance.point);
     cx.room(rows.iter().map(|row| row.points.len()).sum())?;
     let origin = cx.origin();
     rows.iter().map(|row| Ok(Chain::of_curve(&build::polyline(&row.points, row.closed, origin)?))).collect()

@@ -112,7 +112,7 @@ impl Work<'_> {
             .into_iter()
             .max_by(|one, other| one.0.distance_squared(one.1).total_cmp(&other.0.distance_squared(other.1)))
             .unwrap_or_default();
-        let off = chart.surface().point_by(chart.power_form(), middle.x, middle.y) - a;
+        let off = chart.evaluator().point(middle.x, middle.y) - a;
         let along = (b - a).normalize_or_zero();
         let near = (ROUND * a.distance(b) + self.ask.point).max(self.ask.limits.chord.unwrap_or(0.0));
         (off - along * off.dot(along)).length() > near
