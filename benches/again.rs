@@ -67,7 +67,7 @@ fn run(live: &mut Live, lift: f64, of_mesh: bool) -> (f64, usize) {
     let text = model(lift, of_mesh);
     let job = Job::new();
     let started = Instant::now();
-    let outcome = live.run((&text, &[]), Depth::Report, &job, &mut |_| {}).unwrap();
+    let outcome = live.run(&text, &[], Depth::Report, &job, &mut |_| {}).unwrap();
     let seconds = started.elapsed().as_secs_f64();
     assert!(outcome.report.ok, "{}", outcome.drawn(false, false));
     let mesh = &outcome.report.meshes[0];

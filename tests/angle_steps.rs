@@ -35,7 +35,7 @@ impl Random {
 /// The meshes of a script.
 fn meshes(text: &str) -> Vec<Arc<Mesh>> {
     let mut live = Live::new("angles.loft", None, &[], Arc::new(|| 0.0));
-    let outcome = live.run((text, &[]), Depth::Report, &Job::new(), &mut |_| {}).unwrap();
+    let outcome = live.run(text, &[], Depth::Report, &Job::new(), &mut |_| {}).unwrap();
     assert!(outcome.report.ok, "{text}{}", outcome.drawn(false, false));
     outcome.meshes.iter().map(|m| m.1.clone()).collect()
 }

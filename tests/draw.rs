@@ -26,7 +26,7 @@ fn drawn(scene: &Scene, view: &str, size: (usize, usize)) -> (Camera, Image) {
     scene.check().unwrap();
     let frame = lofting::draw::camera::Rect::new(glam::DVec2::ZERO, glam::DVec2::new(size.0 as f64, size.1 as f64));
     let camera = Camera::framing(&View::named(view).unwrap(), &scene.points(), &scene.focus, &frame);
-    let image = raster::draw(scene, &camera, &[], (0.0, 0.0), size);
+    let image = raster::draw(scene, &camera, &[], raster::EdgeStyle::default(), size);
     (camera, image)
 }
 
@@ -201,7 +201,7 @@ fn a_dot_is_round() {
     let spot = |x: f64| lofting::draw::camera::Spot { x, y: 50.0, near: 0.0, grow: 1.0 };
     let dot = Thick { a: spot(50.0), b: spot(50.0), half: 20.0, color: lofting::draw::color::INK, lift: 0.0 };
     let camera = drawn(&Scene::default(), "top", (100, 100)).0;
-    let image = raster::draw(&Scene::default(), &camera, &[dot], (0.0, 0.0), (100, 100));
+    let image = raster::draw(&Scene::default(), &camera, &[dot], raster::EdgeStyle::default(), (100, 100));
     let area = covered(&image) as f64;
     assert!((area - std::f64::consts::PI * 400.0).abs() < 8.0, "{area}");
 }

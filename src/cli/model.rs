@@ -45,8 +45,8 @@ pub fn all(options: &Options, outputs: Outputs, terminal: &Terminal) -> Exit {
     let mut worst = Exit::Fine;
     for model in &models {
         let (exit, rows) = match &options.table {
-            Some(table) => variants(model, (table, cache.as_ref()), options, &job, terminal),
-            None => one(model, several, (options, cache.as_ref()), &job, terminal),
+            Some(table) => variants(model, table, cache.as_ref(), options, &job, terminal),
+            None => one(model, several, options, cache.as_ref(), &job, terminal),
         };
         complain(cache.as_deref(), options, terminal);
         worst = worst.max(exit);
@@ -85,14 +85,19 @@ pub fn open<'a>(name: &'a str, options: &Options, outputs: Outputs) -> Result<Mo
     Ok(Model { name, text, disk })
 }
 
-/// Runs one case behind the wall, with the row of a table that it is of.
-pub fn case(
-    model: &Model,
-    (disk, sets, row): (&Disk, &[(String, String)], Option<&TableRow>),
-    options: &Options,
-    job: &Arc<Job>,
-    kept: Option<&mut Kept>,
-) -> Result<Outcome, Bug> {
+/// What the runs of one model differ in.
+pub struct Variant<'a> {
+    /// Where its outputs go.
+    pub disk: &'a Disk,
+    /// Params with the text of their values.
+    pub sets: &'a [(String, String)],
+    /// The row of a table that it is of.
+    pub row: Option<&'a TableRow>,
+}
+
+/// Runs one case behind the wall.
+pub fn case(model: &Model, variant: Variant, options: &Options, job: &Arc<Job>, kept: Option<&mut Kept>) -> Result<Outcome, Bug> {
+    let Variant { disk, sets, row } = variant;
     interrupt::protect(disk.staging());
     let started = Instant::now();
     let clock = move || started.elapsed().as_secs_f64();
@@ -146,13 +151,15 @@ fn complain(cache: Option<&Cache>, options: &Options, terminal: &Terminal) {
 fn one(
     model: &Model,
     several: bool,
-    (options, cache): (&Options, Option<&Arc<Cache>>),
+    options: &Options,
+    cache: Option<&Arc<Cache>>,
     job: &Arc<Job>,
     terminal: &Terminal,
 ) -> (Exit, Vec<Case>) {
     let watched = terminal.watched && !options.json && !options.quiet;
     let mut kept = cache.map(|cache| Kept::on(Some(cache.clone())));
-    let outcome = match with_progress(job, watched, || case(model, (&model.disk, &options.sets, None), options, job, kept.as_mut())) {
+    let own = Variant { disk: &model.disk, sets: &options.sets, row: None };
+    let outcome = match with_progress(job, watched, || case(model, own, options, job, kept.as_mut())) {
         Ok(outcome) => outcome,
         Err(caught) => return (bug(&caught, model, terminal), Vec::new()),
     };

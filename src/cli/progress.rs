@@ -53,7 +53,7 @@ struct Told {
 }
 
 impl Told {
-    fn words(&mut self, (phase, number): (String, u64), (done, total): (u64, u64)) -> String {
+    fn words(&mut self, phase: String, number: u64, (done, total): (u64, u64)) -> String {
         if number != self.number {
             *self = Self { number, most: 0 };
         }
@@ -67,7 +67,8 @@ fn show(bar: &ProgressBar, told: &mut Told, job: &Job) {
     if let Ok(style) = ProgressStyle::with_template("{elapsed_precise} {spinner} {wide_msg}") {
         bar.set_style(style);
     }
-    bar.set_message(told.words(job.now(), job.progress()));
+    let (phase, number) = job.now();
+    bar.set_message(told.words(phase, number, job.progress()));
     bar.tick();
 }
 
@@ -78,11 +79,11 @@ mod tests {
     #[test]
     fn a_phase_never_runs_backwards() {
         let mut told = Told::default();
-        let phase = |number| ("meshing roof (1 of 2)".to_owned(), number);
-        assert_eq!(told.words(phase(1), (0, 0)), "meshing roof (1 of 2)");
-        assert_eq!(told.words(phase(1), (2, 4)), "meshing roof (1 of 2), 50 %");
-        assert_eq!(told.words(phase(1), (2, 8)), "meshing roof (1 of 2), 50 %");
-        assert_eq!(told.words(phase(1), (9, 8)), "meshing roof (1 of 2), 100 %");
-        assert_eq!(told.words((String::new(), 2), (0, 8)), "working");
+        let phase = || "meshing roof (1 of 2)".to_owned();
+        assert_eq!(told.words(phase(), 1, (0, 0)), "meshing roof (1 of 2)");
+        assert_eq!(told.words(phase(), 1, (2, 4)), "meshing roof (1 of 2), 50 %");
+        assert_eq!(told.words(phase(), 1, (2, 8)), "meshing roof (1 of 2), 50 %");
+        assert_eq!(told.words(phase(), 1, (9, 8)), "meshing roof (1 of 2), 100 %");
+        assert_eq!(told.words(String::new(), 2, (0, 8)), "working");
     }
 }

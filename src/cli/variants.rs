@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
-use super::model::{Model, bug, case, exit_of, show};
+use super::model::{Model, Variant, bug, case, exit_of, show};
 use super::options::Options;
 use super::progress::with_progress;
 use super::{Exit, Terminal, summary};
@@ -21,7 +21,8 @@ use crate::session::variants::{Row, rows};
 /// Runs all rows; one that fails does not stop the others, even by a bug.
 pub fn variants(
     model: &Model,
-    (table, cache): (&Path, Option<&Arc<Cache>>),
+    table: &Path,
+    cache: Option<&Arc<Cache>>,
     options: &Options,
     job: &Arc<Job>,
     terminal: &Terminal,
@@ -41,7 +42,8 @@ pub fn variants(
     for row in rows {
         let disk = model.disk.with_subfolder(&row.name);
         let watched = terminal.watched && !options.json && !options.quiet;
-        let run = || case(model, (&disk, &row.sets, Some(&row.at)), options, job, Some(&mut kept));
+        let variant = Variant { disk: &disk, sets: &row.sets, row: Some(&row.at) };
+        let run = || case(model, variant, options, job, Some(&mut kept));
         let (exit, report) = match with_progress(job, watched, run) {
             Ok(outcome) => {
                 tell(&outcome, &row, &mut told, options, terminal);

@@ -55,7 +55,7 @@ pub fn chain(chain: &Chain, fine: f64, tolerance: &Tolerance) -> Vec<DVec3> {
     points
 }
 
-/// Points along a stretch of an edge.
+/// Points along a part of an edge.
 pub fn track(track: &Track, (from, to): (f64, f64), fine: f64) -> Vec<DVec3> {
     let at = |s: f64| track.point(s);
     let mut points = vec![at(from)];
@@ -67,22 +67,14 @@ pub fn track(track: &Track, (from, to): (f64, f64), fine: f64) -> Vec<DVec3> {
 }
 
 /// The edges of some surfaces: free ones, kinks, and where surfaces meet; borders up to `near` apart meet.
-pub fn borders(
-    (model, network): (&Model, &Network),
-    (members, near): (&BTreeSet<SurfaceId>, f64),
-    fine: f64,
-    tolerance: &Tolerance,
-) -> Vec<Line> {
-    let stretches = model.edge_pieces(members, near, network, tolerance);
-    par::map(stretches.len(), |k| Line {
-        kind: kind_of(&stretches[k], tolerance),
-        points: track(&stretches[k].track, stretches[k].s, fine),
-    })
+pub fn borders(model: &Model, network: &Network, members: &BTreeSet<SurfaceId>, near: f64, fine: f64, tolerance: &Tolerance) -> Vec<Line> {
+    let pieces = model.edge_pieces(members, near, network, tolerance);
+    par::map(pieces.len(), |k| Line { kind: kind_of(&pieces[k], tolerance), points: track(&pieces[k].track, pieces[k].s, fine) })
 }
 
-/// What a stretch tells: a fold is a kink, between surfaces and at a seam too.
-fn kind_of(stretch: &EdgePiece, tolerance: &Tolerance) -> Kind {
-    match (stretch.meeting, stretch.turn) {
+/// How a piece of an edge is drawn: a fold is a kink, between surfaces and at a seam too.
+fn kind_of(piece: &EdgePiece, tolerance: &Tolerance) -> Kind {
+    match (piece.meeting, piece.turn) {
         (Meeting::Free, _) => Kind::Free,
         (Meeting::Crowded, _) => Kind::Crowded,
         // Faces that lie on each other end there, both.
@@ -105,16 +97,16 @@ const COMPARED: usize = 33;
 
 impl Folds {
     /// Of some surfaces; borders up to `near` apart meet.
-    pub fn new((model, network): (&Model, &Network), (members, near): (&BTreeSet<SurfaceId>, f64), tolerance: &Tolerance) -> Self {
-        let stretches = model.edge_pieces(members, near, network, tolerance);
+    pub fn new(model: &Model, network: &Network, members: &BTreeSet<SurfaceId>, near: f64, tolerance: &Tolerance) -> Self {
+        let pieces = model.edge_pieces(members, near, network, tolerance);
         let name = |id: SurfaceId| model.surfaces[id.index()].name.clone();
-        let border = |stretch: &EdgePiece| {
-            let [a, b] = stretch.surfaces.as_slice() else { return None };
+        let border = |piece: &EdgePiece| {
+            let [a, b] = piece.surfaces.as_slice() else { return None };
             let (a, b) = (name(*a).min(name(*b)), name(*a).max(name(*b)));
-            let place = |k: usize| stretch.s.0 + (stretch.s.1 - stretch.s.0) * k as f64 / (COMPARED - 1) as f64;
-            Some((a, b, kind_of(stretch, tolerance), (0..COMPARED).map(|k| stretch.track.point(place(k))).collect()))
+            let place = |k: usize| piece.s.0 + (piece.s.1 - piece.s.0) * k as f64 / (COMPARED - 1) as f64;
+            Some((a, b, kind_of(piece, tolerance), (0..COMPARED).map(|k| piece.track.point(place(k))).collect()))
         };
-        Self { borders: stretches.iter().filter_map(border).collect() }
+        Self { borders: pieces.iter().filter_map(border).collect() }
     }
 
     /// What the border of two surfaces tells at a place; `None` where they are not known to meet.

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use super::annotate::{self, Layout};
 use super::camera::{Camera, Rect, View};
 use super::page::{self, Item};
-use super::raster::{self, Image, Thick};
+use super::raster::{self, EdgeStyle, Image, Thick};
 use super::scene::{Kind, Scene};
 use super::{color, png, svg};
 use crate::base::job;
@@ -79,12 +79,12 @@ impl Picture {
         let strength = edge_strength(scene, &camera, settings);
         let lines = thick_lines(scene, &camera, layout.size);
         let size = (settings.width, settings.height);
-        let edge = (strength, Kind::Element.width() * layout.line);
+        let edges = EdgeStyle { strength, width: Kind::Element.width() * layout.line };
         let (image, paths) = match format {
-            Format::Png => (raster::draw(scene, &camera, &lines, edge, size), Vec::new()),
+            Format::Png => (raster::draw(scene, &camera, &lines, edges, size), Vec::new()),
             Format::Svg => {
-                let image = raster::draw(scene, &camera, &[], (0.0, 0.0), size);
-                let paths = svg::paths(scene, &camera, &image, (strength, layout.line));
+                let image = raster::draw(scene, &camera, &[], EdgeStyle::default(), size);
+                let paths = svg::paths(scene, &camera, &image, strength, layout.line);
                 (image, paths)
             }
         };

@@ -141,10 +141,17 @@ fn bands_of(low: f64, high: f64, height: usize) -> Option<std::ops::Range<usize>
     })
 }
 
+/// How edges of elements are drawn.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct EdgeStyle {
+    /// How strongly, 0…1.
+    pub strength: f64,
+    /// Their width, pixels.
+    pub width: f64,
+}
+
 /// Draws the faces of a scene and then the lines, which are hidden by what is nearer.
-///
-/// `edges` is how strongly edges of elements are drawn, 0…1, and their width in pixels.
-pub fn draw(scene: &Scene, camera: &Camera, lines: &[Thick], edges: (f64, f64), (width, height): (usize, usize)) -> Image {
+pub fn draw(scene: &Scene, camera: &Camera, lines: &[Thick], edges: EdgeStyle, (width, height): (usize, usize)) -> Image {
     let projected = Projected::new(scene, camera, height);
     let mut line_bands: Vec<Vec<u32>> = vec![Vec::new(); height.div_ceil(BAND)];
     for (k, line) in job::looking(lines.iter().enumerate()) {
@@ -158,7 +165,7 @@ pub fn draw(scene: &Scene, camera: &Camera, lines: &[Thick], edges: (f64, f64), 
         let rows = BAND.min(height - band * BAND);
         let mut buffer = Buffer::new(width, band * BAND, rows);
         for &id in job::looking(&projected.bands[band]) {
-            buffer.triangle((id, projected.triangles[id as usize].sheet), projected.corners(scene, id));
+            buffer.triangle(id, projected.triangles[id as usize].sheet, projected.corners(scene, id));
         }
         for &k in job::looking(&line_bands[band]) {
             buffer.line(k, &lines[k as usize]);
@@ -220,7 +227,7 @@ impl Buffer {
 
     /// Marks the places where a triangle is nearer than what was there; of sheets that lie on each other the later one is seen. Sides
     /// are cut the same way from both of their triangles, so nothing shows between neighbours.
-    fn triangle(&mut self, (id, sheet): (u32, u32), corners: [Spot; 3]) {
+    fn triangle(&mut self, id: u32, sheet: u32, corners: [Spot; 3]) {
         let n = SAMPLES as f64;
         let p = corners.map(|s| (s.x * n, s.y * n, s.near));
         let area = (p[1].0 - p[0].0) * (p[2].1 - p[0].1) - (p[2].0 - p[0].0) * (p[1].1 - p[0].1);

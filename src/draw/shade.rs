@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use super::camera::{Camera, Spot};
 use super::color::{ELEMENT, Rgb};
-use super::raster::{self, Corner3, Projected};
+use super::raster::{self, Corner3, EdgeStyle, Projected};
 use super::scene::{Paint, Scene, Sheet};
 use crate::base::math;
 
@@ -17,20 +17,19 @@ const FILL: f64 = 0.26;
 /// Stripes over half a turn of the reflected view.
 const STRIPES: f64 = 36.0;
 
-/// Everything that shading a face asks.
+/// Everything that shading a face needs.
 pub(super) struct Shader<'s> {
     scene: &'s Scene,
     camera: &'s Camera,
     projected: &'s Projected,
     fill: DVec3,
-    /// How strongly edges of elements are drawn, and their half width in pixels.
-    edges: (f64, f64),
+    edges: EdgeStyle,
 }
 
 impl<'s> Shader<'s> {
-    pub fn new(scene: &'s Scene, camera: &'s Camera, projected: &'s Projected, (strength, width): (f64, f64)) -> Self {
+    pub fn new(scene: &'s Scene, camera: &'s Camera, projected: &'s Projected, edges: EdgeStyle) -> Self {
         let fill = (camera.up * 0.8 - camera.right * 0.6 + camera.back * 0.5).normalize();
-        Self { scene, camera, projected, fill, edges: (strength, 0.5 * width) }
+        Self { scene, camera, projected, fill, edges }
     }
 
     fn sheet(&self, id: u32) -> (&'s Sheet, usize) {
@@ -92,7 +91,8 @@ impl<'s> Shader<'s> {
 
     /// How much of a place the edges of the element cover, 0…1.
     fn edge(&self, sheet: &Sheet, triangle: usize, spots: &[Spot; 3], shares: [f64; 3], twice_area: f64) -> f64 {
-        let (strength, half) = self.edges;
+        let EdgeStyle { strength, width } = self.edges;
+        let half = 0.5 * width;
         let sides = sheet.edges.get(triangle).copied().unwrap_or(0);
         if strength <= 0.0 || sides == 0 {
             return 0.0;

@@ -30,8 +30,8 @@ pub struct Path {
     lines: Vec<Vec<DVec2>>,
 }
 
-/// The seen parts of all lines, one path for each kind; `strength` is that of edges of elements.
-pub fn paths(scene: &Scene, camera: &Camera, image: &Image, (strength, line): (f64, f64)) -> Vec<Path> {
+/// The seen parts of all lines, one path for each kind. `strength`, 0…1, is that of edges of elements; widths are multiplied by `line`.
+pub fn paths(scene: &Scene, camera: &Camera, image: &Image, strength: f64, line: f64) -> Vec<Path> {
     let mut paths = Vec::new();
     for kind in Kind::ALL {
         let mut seen = Seen { image, lift: lift(kind), lines: Vec::new() };

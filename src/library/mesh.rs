@@ -29,7 +29,8 @@ pub struct Mesh {
 impl Mesh {
     pub(super) fn new(
         mesh: Arc<mesh::Mesh>,
-        (tolerance, unit): (Tolerance, LengthUnit),
+        tolerance: Tolerance,
+        unit: LengthUnit,
         groups: Vec<String>,
         notes: Vec<DiagnosticRow>,
     ) -> Self {

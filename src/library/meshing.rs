@@ -66,8 +66,7 @@ impl MeshPlan {
                 _ => return Err(Error::outside("lines", format!("`{name}`"), "curves")),
             }
         }
-        let scene = (model.scene.model.as_ref(), model.scene.network.as_ref());
-        faces.settle(&mut plan, scene, self.settings.flip(), &model.tolerance).map_err(failed)?;
+        faces.settle(&mut plan, &model.scene, self.settings.flip(), &model.tolerance).map_err(failed)?;
         for (name, said) in &self.rules {
             for target in targets(model, name)? {
                 plan.rules.push(rule(target, *said, name)?);
@@ -86,7 +85,7 @@ impl MeshPlan {
         let (mesh, found) = self.build(plan, model).map_err(failed)?;
         said.extend(found);
         let groups = self.groups.iter().map(|group| group.0.clone()).collect();
-        Ok(Mesh::new(Arc::new(mesh), (model.tolerance, model.unit), groups, model.rows(&said)))
+        Ok(Mesh::new(Arc::new(mesh), model.tolerance, model.unit, groups, model.rows(&said)))
     }
 
     /// The mesh of a finished plan with what is to be said about its rules.

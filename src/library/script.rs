@@ -163,7 +163,7 @@ fn finished(loaded: Loaded, groups: Vec<String>, outcome: Outcome, place: Place)
     let on_disk = place.out.is_some();
     let mut written = place.into_written();
     let report = outcome.report;
-    let meshes = outcome.meshes.into_iter().map(|(_, mesh)| Mesh::new(mesh, (tolerance, unit), groups.clone(), Vec::new())).collect();
+    let meshes = outcome.meshes.into_iter().map(|(_, mesh)| Mesh::new(mesh, tolerance, unit, groups.clone(), Vec::new())).collect();
     let output = |row: &crate::session::report::OutputRow| Output {
         path: row.path.clone(),
         size: row.bytes,

@@ -77,11 +77,11 @@ impl Model {
     /// Fails with E413 where it cannot be told whether one closed skin lies inside another one.
     pub fn body(&self, shell: &Shell, network: &Network, tolerance: &Tolerance) -> Result<Body> {
         let members: BTreeSet<SurfaceId> = shell.surfaces.iter().map(|s| s.0).collect();
-        let (edges, joins) = self.joins(&members, shell.near, network, tolerance);
-        let slivers = self.slivers(&members, (&edges, &joins.pieces), shell.near);
+        let joins = self.joins(&members, shell.near, network, tolerance);
+        let slivers = self.slivers(&members, &joins, shell.near);
         let mut body = Body { vertices: joins.pieces.junctions.clone(), ..Body::default() };
         body.edges.extend(joins.pieces.segments.iter().map(|segment| BodyEdge {
-            part: EdgePart { edge: edges[segment.track], s: segment.s, against: false },
+            part: EdgePart { edge: joins.edges[segment.track], s: segment.s, against: false },
             ends: segment.ends,
             seam: None,
         }));
@@ -92,7 +92,7 @@ impl Model {
                 for sides in self.sides_by_loop(patch) {
                     let mut around = BodyLoop::new();
                     for (edge, against) in sides {
-                        let Ok(track) = edges.binary_search(&edge) else { continue };
+                        let Ok(track) = joins.edges.binary_search(&edge) else { continue };
                         let uses = &joins.pieces.of_track[track];
                         let step = |u: &super::segments::SegmentUse| (u.segment, u.against != against);
                         if against { around.extend(uses.iter().rev().map(step)) } else { around.extend(uses.iter().map(step)) }

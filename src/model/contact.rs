@@ -108,38 +108,41 @@ impl Model {
     /// more than two faces meet, each two of them have one.
     pub fn contacts(
         &self,
-        (members, near): (&[SurfaceId], f64),
-        (network, tolerance): (&Network, &Tolerance),
+        members: &[SurfaceId],
+        near: f64,
+        network: &Network,
+        tolerance: &Tolerance,
         wanted: impl Fn((PatchId, EdgeId), (PatchId, EdgeId)) -> bool + Sync + Send,
     ) -> Vec<Contact> {
-        let (edges, joins) = self.joins(&members.iter().copied().collect(), near, network, tolerance);
+        let joins = self.joins(&members.iter().copied().collect(), near, network, tolerance);
         let one = |a: &Border, b: &Border, segment| wanted((a.face, a.edge), (b.face, b.edge)).then(|| contact(a, b, &joins, segment));
-        self.across(members, (&edges, &joins), one)
+        self.across(members, &joins, one)
     }
 
     /// How far the normal turns at most across each stretch that two faces share, 0 to a half turn, radians, whatever the sides
     /// of their surfaces: an edge of each with where on it the middle of the stretch is. Otherwise as [`Model::contacts`].
-    pub fn turns(&self, (members, near): (&[SurfaceId], f64), (network, tolerance): (&Network, &Tolerance)) -> Vec<Turn> {
-        let (edges, joins) = self.joins(&members.iter().copied().collect(), near, network, tolerance);
+    pub fn turns(&self, members: &[SurfaceId], near: f64, network: &Network, tolerance: &Tolerance) -> Vec<Turn> {
+        let joins = self.joins(&members.iter().copied().collect(), near, network, tolerance);
         let one = |a: &Border, b: &Border, segment| {
             most_turn(a, b, STEPS.max(STEPS_A_SPAN * a.spans().max(b.spans()))).map(|turn| {
-                let place = edges.binary_search(&a.edge).ok().and_then(|k| joins.pieces.of_track[k].iter().find(|u| u.segment == segment));
+                let place =
+                    joins.edges.binary_search(&a.edge).ok().and_then(|k| joins.pieces.of_track[k].iter().find(|u| u.segment == segment));
                 Turn { edge: a.edge, s: place.map_or(0.0, |u| 0.5 * (u.s.0 + u.s.1)), turn }
             })
         };
-        self.across(members, (&edges, &joins), one)
+        self.across(members, &joins, one)
     }
 
     /// What is found of each stretch that two faces share, given by their borders and its number, in the order of [`pairs_in_order`].
     fn across<T: Send>(
         &self,
         members: &[SurfaceId],
-        (edges, joins): (&[EdgeId], &Joins),
+        joins: &Joins,
         one: impl Fn(&Border, &Border, usize) -> Option<T> + Sync + Send,
     ) -> Vec<T> {
         let faces = self.faces_of(members);
         let loops = par::map(faces.len(), |n| self.loop_of(faces[n]));
-        let borders = self.borders((&faces, &loops), (edges, joins));
+        let borders = self.borders(&faces, &loops, joins);
         let pairs = pairs_in_order(&borders);
         let found = par::map(pairs.len(), |n| {
             let (segment, a, b) = pairs[n];
@@ -150,10 +153,10 @@ impl Model {
 
     /// The largest turn of the normal across each of the joined stretches at a few places, otherwise as in [`Model::turns`]; `None` where
     /// not two faces meet, or one has no normal.
-    pub(super) fn turns_across(&self, members: &[SurfaceId], (edges, joins): (&[EdgeId], &Joins)) -> Vec<Option<f64>> {
+    pub(super) fn turns_across(&self, members: &[SurfaceId], joins: &Joins) -> Vec<Option<f64>> {
         let faces = self.faces_of(members);
         let loops = par::map(faces.len(), |n| self.loop_of(faces[n]));
-        let borders = self.borders((&faces, &loops), (edges, joins));
+        let borders = self.borders(&faces, &loops, joins);
         par::map(borders.len(), |segment| match borders[segment].as_slice() {
             [a, b] => most_turn(a, b, SEEN),
             _ => None,
@@ -167,14 +170,14 @@ impl Model {
     }
 
     /// The borders on each segment.
-    fn borders<'a>(&'a self, (faces, loops): (&[PatchId], &'a [Loop]), (edges, joins): (&[EdgeId], &Joins)) -> Vec<Vec<Border<'a>>> {
+    fn borders<'a>(&'a self, faces: &[PatchId], loops: &'a [Loop], joins: &Joins) -> Vec<Vec<Border<'a>>> {
         let mut borders: Vec<Vec<Border>> = joins.pieces.segments.iter().map(|_| Vec::new()).collect();
         for (rank, (face, around)) in faces.iter().zip(loops).enumerate() {
             let patch = &self.patches[face.index()];
             let surface = &self.surfaces[patch.surface.index()].surface;
             for (piece, entry) in around.pieces.iter().enumerate() {
                 let Some((edge, against)) = entry.edge else { continue };
-                let Ok(place) = edges.binary_search(&edge) else { continue };
+                let Ok(place) = joins.edges.binary_search(&edge) else { continue };
                 let share = entry.length() / joins.parts[place].track.length();
                 for part in &joins.pieces.of_track[place] {
                     let on = |s: f64| if against { entry.length() - s * share } else { s * share };
@@ -200,11 +203,11 @@ pub struct Turn {
 
 /// Each two borders on one segment, with the segment: by the first one's face, then along its border.
 fn pairs_in_order(borders: &[Vec<Border>]) -> Vec<(usize, usize, usize)> {
-    let of_atom = |segment: usize| {
+    let of_segment = |segment: usize| {
         let count = borders[segment].len();
         (0..count).flat_map(move |a| (a + 1..count).map(move |b| (segment, a, b)))
     };
-    let mut order: Vec<(usize, usize, usize)> = (0..borders.len()).flat_map(of_atom).collect();
+    let mut order: Vec<(usize, usize, usize)> = (0..borders.len()).flat_map(of_segment).collect();
     let key = |(segment, a, _): &(usize, usize, usize)| {
         (borders[*segment][*a].rank, borders[*segment][*a].piece, borders[*segment][*a].station(0.5))
     };

@@ -123,7 +123,7 @@ impl<'a> Cut<'a> {
                 cut.arcs.push(Arc { apex, border: from.0, t: from.1 });
             }
             for (from, to) in kept_sides(crossings)? {
-                cut.along_sides((&tiles, *n), (from, to), &mut reached);
+                cut.along_sides(&tiles, *n, (from, to), &mut reached);
             }
         }
         for (n, parts) in &ways.closed {
@@ -142,7 +142,7 @@ impl<'a> Cut<'a> {
     }
 
     /// Cones over the sides of a triangle from one place to another, counter-clockwise; triangles beyond whole sides are kept.
-    fn along_sides(&mut self, (tiles, n): (&Tiles, usize), (from, to): (Place, Place), reached: &mut VecDeque<usize>) {
+    fn along_sides(&mut self, tiles: &Tiles, n: usize, (from, to): (Place, Place), reached: &mut VecDeque<usize>) {
         let (mut at, mut left) = (from, 4);
         while left > 0 {
             left -= 1;

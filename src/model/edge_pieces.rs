@@ -44,11 +44,11 @@ impl Model {
     /// One long side against several shorter ones is cut where they end, as in [`Model::shell`]; borders up to `near` apart are
     /// shared.
     pub fn edge_pieces(&self, members: &BTreeSet<SurfaceId>, near: f64, network: &Network, tolerance: &Tolerance) -> Vec<EdgePiece> {
-        let (edges, joins) = self.joins(members, near, network, tolerance);
+        let joins = self.joins(members, near, network, tolerance);
         let n = joins.pieces.segments.len();
         let mut users: Vec<Vec<SurfaceId>> = vec![Vec::new(); n];
         let mut inside = vec![false; n];
-        for (edge, uses) in edges.iter().zip(&joins.pieces.of_track) {
+        for (edge, uses) in joins.edges.iter().zip(&joins.pieces.of_track) {
             for (patch, _) in &self.edges[edge.index()].users {
                 let patch = &self.patches[patch.index()];
                 if members.contains(&patch.surface) {
@@ -67,7 +67,7 @@ impl Model {
             _ => Meeting::Crowded,
         };
         let members: Vec<SurfaceId> = members.iter().copied().collect();
-        let turns = self.turns_across(&members, (&edges, &joins));
+        let turns = self.turns_across(&members, &joins);
         let piece = |(k, segment): (usize, &super::segments::Segment)| EdgePiece {
             track: joins.parts[segment.track].track.clone(),
             s: segment.s,

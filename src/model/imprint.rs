@@ -65,14 +65,8 @@ impl Model {
     /// What some surfaces have in common beside the edges that they share; `origin` is given to the curves.
     ///
     /// Fails with E413 when the work exceeds its limit.
-    pub fn imprint(
-        &self,
-        listed: &[SurfaceId],
-        origin: Origin,
-        (network, tolerance): (&Network, &Tolerance),
-        job: &Job,
-    ) -> Result<Imprint> {
-        let met = self.met(listed, origin, (network, tolerance), job)?;
+    pub fn imprint(&self, listed: &[SurfaceId], origin: Origin, network: &Network, tolerance: &Tolerance, job: &Job) -> Result<Imprint> {
+        let met = self.met(listed, origin, network, tolerance, job)?;
         let mut crossing: BTreeSet<(EdgeId, EdgeId)> = BTreeSet::new();
         for m in &met {
             let others = self.sides_of(m.pair.1);
@@ -105,7 +99,8 @@ impl Model {
         &self,
         listed: &[SurfaceId],
         origin: Origin,
-        (network, tolerance): (&Network, &Tolerance),
+        network: &Network,
+        tolerance: &Tolerance,
         job: &Job,
     ) -> Result<Vec<Met>> {
         let pairs = self.near_pairs(listed, tolerance);

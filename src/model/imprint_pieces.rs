@@ -33,10 +33,11 @@ impl Model {
         &self,
         listed: &[SurfaceId],
         origin: Origin,
-        (network, tolerance): (&Network, &Tolerance),
+        network: &Network,
+        tolerance: &Tolerance,
         job: &Job,
     ) -> Result<Vec<Surface>> {
-        let met = self.met(listed, origin, (network, tolerance), job)?;
+        let met = self.met(listed, origin, network, tolerance, job)?;
         let pieces = par::try_map(listed.len(), |k| {
             job.go_on()?;
             let cutters = self.cutters(listed[k], &met, network, tolerance)?;

@@ -26,6 +26,7 @@ mod measure_triangles;
 mod measure_trimmed;
 pub mod moments;
 mod nearest;
+mod on_chain;
 mod outwards;
 mod patches;
 pub mod segments;

@@ -42,7 +42,7 @@ impl Moments {
         if surface.domain() == Domain::Unbounded {
             return Self::default();
         }
-        let (about, reach) = frame(surface.hull());
+        let Frame { about, reach } = Frame::of(surface.hull());
         let (sum, _) = over(surface, about, MEASURE_ACCURACY, &|jet, r| {
             let n = jet.du.cross(jet.dv);
             densities(n.length(), r / reach, n, (r / reach).dot(n))
@@ -53,13 +53,13 @@ impl Moments {
 
     /// Of a curve.
     pub fn of_curve(curve: &Curve) -> Self {
-        Self::of_parts(&[(curve, curve.domain().0, curve.domain().1)], frame(curve.bbox()))
+        Self::of_parts(&[(curve, curve.domain().0, curve.domain().1)], Frame::of(curve.bbox()))
     }
 
     /// Of a modeling curve.
     pub fn of_chain(chain: &Chain) -> Self {
-        let parts: Vec<(&Curve, f64, f64)> = chain.runs().iter().flat_map(|run| stretches(run).map(|(a, b)| (&run.curve, a, b))).collect();
-        Self::of_parts(&parts, frame(chain.bbox()))
+        let parts: Vec<(&Curve, f64, f64)> = chain.runs().iter().flat_map(|run| spans(run).map(|(a, b)| (&run.curve, a, b))).collect();
+        Self::of_parts(&parts, Frame::of(chain.bbox()))
     }
 
     /// Of points of mass 1 each.
@@ -68,7 +68,7 @@ impl Moments {
         if bounds.is_empty() {
             return Self::default();
         }
-        let (about, reach) = frame(bounds);
+        let Frame { about, reach } = Frame::of(bounds);
         let mut sum = [0.0; N];
         for p in points {
             add(&mut sum, 1.0, &densities(1.0, (p - about) / reach, DVec3::ZERO, 0.0));
@@ -77,7 +77,7 @@ impl Moments {
     }
 
     /// Of pieces of curves between two parameters each; backwards where the second is the smaller one.
-    fn of_parts(parts: &[(&Curve, f64, f64)], (about, reach): (DVec3, f64)) -> Self {
+    fn of_parts(parts: &[(&Curve, f64, f64)], Frame { about, reach }: Frame) -> Self {
         let density = |curve: &Curve, t: f64, sign: f64| {
             let jet = curve.jet(t);
             let r = (jet.p - about) / reach;
@@ -212,13 +212,23 @@ impl Moments {
     }
 }
 
-/// A point near what lies in a box, and the unit of lengths from there.
-fn frame(bounds: Box3) -> (DVec3, f64) {
-    let reach = 0.5 * bounds.diagonal();
-    if bounds.is_empty() || !reach.is_finite() {
-        return (DVec3::ZERO, 1.0);
+/// What integrals are taken in.
+struct Frame {
+    /// The origin, near the thing.
+    about: DVec3,
+    /// The unit of lengths, model units.
+    reach: f64,
+}
+
+impl Frame {
+    /// For what lies in a box.
+    fn of(bounds: Box3) -> Self {
+        let reach = 0.5 * bounds.diagonal();
+        if bounds.is_empty() || !reach.is_finite() {
+            return Self { about: DVec3::ZERO, reach: 1.0 };
+        }
+        Self { about: bounds.center(), reach: if reach > 0.0 { reach } else { 1.0 } }
     }
-    (bounds.center(), if reach > 0.0 { reach } else { 1.0 })
 }
 
 /// Mass `a` at `q` with side `n` and `a`-fold height `h`, each beside the mass, so that none is negative.
@@ -237,7 +247,7 @@ fn add(sum: &mut [f64; N], weight: f64, values: &[f64; N]) {
 }
 
 /// The parameters a run goes between; two pairs where it passes the start of its curve.
-fn stretches(run: &Run) -> impl Iterator<Item = (f64, f64)> {
+fn spans(run: &Run) -> impl Iterator<Item = (f64, f64)> {
     let (length, (first, last)) = (run.curve.length(), run.curve.domain());
     let at = |s: f64| {
         if s >= length {

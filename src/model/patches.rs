@@ -2,11 +2,12 @@
 
 use glam::DVec3;
 
+use super::on_chain::OnChain;
 use super::topology::{EdgeCurve, Named, SurfaceId};
 use super::trace::Track;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::closest;
-use crate::network::{Chain, LinkId, Network};
+use crate::network::{Chain, Network};
 use crate::surface::{Domain, Side, Surface};
 
 /// An edge between two corners of its own surface.
@@ -37,54 +38,6 @@ pub(super) struct Pieces {
     pub vertices: Vec<DVec3>,
     pub edges: Vec<RawEdge>,
     pub patches: Vec<RawPatch>,
-}
-
-/// A line of the surface that lies on a chain: the chain, its links when the network has it, its fraction at each corner.
-struct OnChain {
-    chain: Chain,
-    links: Option<Vec<(LinkId, bool)>>,
-    /// How far the links reach out before the start of the chain and beyond its end.
-    over: (f64, f64),
-    fractions: Vec<f64>,
-}
-
-impl OnChain {
-    fn new(chain: &Chain, fractions: Vec<f64>, network: &Network, tolerance: &Tolerance) -> Self {
-        let mut links = network.links_of(chain, tolerance);
-        let over = links.as_mut().map_or((0.0, 0.0), |links| turned(links, chain, network, tolerance));
-        Self { chain: chain.clone(), links, over, fractions }
-    }
-}
-
-/// Turns the links of a ring that begins between two nodes so that the first one holds its start; that one is there once more
-/// as the last. Gives how far they reach out at both ends.
-fn turned(links: &mut Vec<(LinkId, bool)>, chain: &Chain, network: &Network, tolerance: &Tolerance) -> (f64, f64) {
-    let [run] = chain.runs() else { return (0.0, 0.0) };
-    let length = |link: &(LinkId, bool)| {
-        let s = network.links[link.0.index()].s;
-        s.1 - s.0
-    };
-    // Only a whole ring may begin between nodes.
-    let total = run.curve.length();
-    if chain.length() < total - tolerance.point {
-        return (0.0, 0.0);
-    }
-    let Some(start) = network.start_of_turn(run, tolerance) else { return (0.0, 0.0) };
-    let ahead = if run.is_backward() { run.s0 - start } else { start - run.s0 };
-    let ahead = ahead - total * (ahead / total).floor();
-    if ahead <= tolerance.point || ahead >= total - tolerance.point {
-        return (0.0, 0.0);
-    }
-    // The start of the chain is so far along the ring from its first link.
-    let (mut k, mut before) = (0, 0.0);
-    while k + 1 < links.len() && before + length(&links[k]) <= total - ahead {
-        before += length(&links[k]);
-        k += 1;
-    }
-    links.rotate_left(k);
-    links.push(links[0]);
-    let lead = total - ahead - before;
-    (lead, length(&links[0]) - lead)
 }
 
 /// Where a line runs: side number, or a line inside.
@@ -256,7 +209,7 @@ impl Cutter<'_> {
         let on = OnChain::new(&chain, stops.iter().map(|s| s.0).collect(), self.network, self.tolerance);
         let edges = (0..stops.len() - 1)
             .filter_map(|n| {
-                let curve = self.run_between(&on, n);
+                let curve = on.edge_curve(n, self.network, self.tolerance);
                 self.edge(curve, (stops[n].1, stops[n + 1].1))
             })
             .collect();
@@ -300,8 +253,11 @@ impl Cutter<'_> {
         let support = self.support(place, corners);
         let mut sides = Vec::new();
         for (n, w) in corners.windows(2).enumerate() {
-            let curve =
-                support.as_ref().map(|on| self.run_between(on, n)).unwrap_or(EdgeCurve::Iso { surface: self.id, from: w[0].0, to: w[1].0 });
+            let curve = support.as_ref().map(|on| on.edge_curve(n, self.network, self.tolerance)).unwrap_or(EdgeCurve::Iso {
+                surface: self.id,
+                from: w[0].0,
+                to: w[1].0,
+            });
             match self.edge(curve, (w[0].1, w[1].1)) {
                 Some(edge) => sides.push(RawSide { edges: vec![edge], pole: None }),
                 None => sides.push(RawSide { edges: Vec::new(), pole: Some(w[0].1) }),
@@ -357,53 +313,5 @@ impl Cutter<'_> {
         let ascending = places.windows(2).all(|w| w[0] < w[1]);
         let descending = places.windows(2).all(|w| w[0] > w[1]);
         (ascending || descending).then(|| OnChain::new(chain, places.into_iter().step_by(QUARTERS).collect(), self.network, self.tolerance))
-    }
-
-    /// The run of the chain between corners `n` and `n + 1` of a line, by links where the network has them.
-    fn run_between(&self, on: &OnChain, n: usize) -> EdgeCurve {
-        let length = on.chain.length();
-        let (mut a, mut b) = (on.fractions[n] * length, on.fractions[n + 1] * length);
-        let backwards = a > b;
-        if backwards {
-            (a, b) = (length - a, length - b);
-        }
-        let found = on.links.clone().and_then(|links| self.links_between((links, on.over), backwards, (a, b)));
-        found.unwrap_or_else(|| {
-            let chain = if backwards { on.chain.reversed() } else { on.chain.clone() };
-            EdgeCurve::Run { chain, span: (a, b) }
-        })
-    }
-
-    /// The links of a chain (run backwards first if so) between two arc lengths.
-    fn links_between(
-        &self,
-        (mut links, over): (Vec<(LinkId, bool)>, (f64, f64)),
-        backwards: bool,
-        (a, b): (f64, f64),
-    ) -> Option<EdgeCurve> {
-        if backwards {
-            links.reverse();
-            links.iter_mut().for_each(|(_, against)| *against = !*against);
-        }
-        let (mut used, mut before, mut start) = (Vec::new(), if backwards { -over.1 } else { -over.0 }, 0.0);
-        let near = self.tolerance.point;
-        for (link, against) in links {
-            let s = self.network.links[link.index()].s;
-            let after = before + (s.1 - s.0);
-            if after.min(b) - before.max(a) > near {
-                if used.is_empty() {
-                    start = before;
-                }
-                used.push((link, against));
-            }
-            before = after;
-        }
-        if used.is_empty() {
-            return None;
-        }
-        let total: f64 = used.iter().map(|(l, _)| self.network.links[l.index()].s).map(|s| s.1 - s.0).sum();
-        let from = if a - start <= near { 0.0 } else { a - start };
-        let to = if total - (b - start) <= near { total } else { b - start };
-        Some(EdgeCurve::Links { links: used, span: (from, to) })
     }
 }

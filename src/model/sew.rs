@@ -21,10 +21,9 @@ struct Gap {
     surfaces: (SurfaceId, SurfaceId),
 }
 
-/// What joining edges needs to be judged: the edges in the order of the joins' tracks.
+/// What joining edges needs to be judged.
 pub(super) struct Seams<'a> {
     pub model: &'a Model,
-    pub edges: &'a [EdgeId],
     pub joins: &'a Joins,
 }
 
@@ -48,7 +47,8 @@ const SAMPLES: usize = 8;
 impl Model {
     /// Whether a patch is thinner than what was glued: its loop runs along every segment there and back, and it has no more area than
     /// a strip as wide as `near` along half its border. A tube or a torus runs there and back along its seam, too, but has area.
-    pub fn is_sliver(&self, id: PatchId, (edges, pieces): (&[EdgeId], &Segments), near: f64) -> bool {
+    /// `edges`, ascending, are those of the tracks of `pieces`.
+    pub fn is_sliver(&self, id: PatchId, edges: &[EdgeId], pieces: &Segments, near: f64) -> bool {
         let patch = &self.patches[id.index()];
         let mut net: BTreeMap<usize, i32> = BTreeMap::new();
         let mut around = 0.0;
@@ -81,7 +81,7 @@ impl Model {
 
 impl Seams<'_> {
     fn surface(&self, part: usize) -> SurfaceId {
-        let user = self.model.edges[self.edges[part].index()].users[0];
+        let user = self.model.edges[self.joins.edges[part].index()].users[0];
         self.model.patches[user.0.index()].surface
     }
 

@@ -175,10 +175,10 @@ impl Model {
     /// The edges of some surfaces where borders up to `near` apart are one, and a long one is cut where shorter ones end on it.
     ///
     /// Faces of other surfaces do not count. Edges that became a corner and faces that became an edge are not there.
-    pub fn shared_edges(&self, surfaces: &[SurfaceId], near: f64, (network, tolerance): (&Network, &Tolerance)) -> SharedEdges {
+    pub fn shared_edges(&self, surfaces: &[SurfaceId], near: f64, network: &Network, tolerance: &Tolerance) -> SharedEdges {
         let members = surfaces.iter().copied().collect();
-        let (edges, joins) = self.joins(&members, near, network, tolerance);
-        let slivers = self.slivers(&members, (&edges, &joins.pieces), near);
+        let joins = self.joins(&members, near, network, tolerance);
+        let slivers = self.slivers(&members, &joins, near);
         let mut faces: Vec<PatchId> = Vec::new();
         for surface in surfaces {
             job::poll();
@@ -187,14 +187,13 @@ impl Model {
                 faces.extend(own);
             }
         }
-        Sharing::new(self, (&edges, &joins), (&faces, near)).all(&faces)
+        Sharing::new(self, &joins, &faces, near).all(&faces)
     }
 }
 
 /// What edges are put together from.
 struct Sharing<'a> {
     model: &'a Model,
-    edges: &'a [EdgeId],
     joins: &'a Joins,
     /// Tracks with a face, ascending, on each segment.
     on: Vec<Vec<usize>>,
@@ -211,17 +210,17 @@ struct Sharing<'a> {
 type Run = Vec<(usize, bool)>;
 
 impl<'a> Sharing<'a> {
-    fn new(model: &'a Model, (edges, joins): (&'a [EdgeId], &'a Joins), (faces, near): (&[PatchId], f64)) -> Self {
+    fn new(model: &'a Model, joins: &'a Joins, faces: &[PatchId], near: f64) -> Self {
         let order: BTreeMap<PatchId, usize> = faces.iter().enumerate().map(|(n, face)| (*face, n)).collect();
         let of_edge = |edge: &EdgeId| model.edges[edge.index()].users.iter().map(|u| u.0).filter(|p| order.contains_key(p)).collect();
-        let users: Vec<Vec<PatchId>> = edges.iter().map(of_edge).collect();
+        let users: Vec<Vec<PatchId>> = joins.edges.iter().map(of_edge).collect();
         let mut on = vec![Vec::new(); joins.pieces.segments.len()];
         for (track, uses) in joins.pieces.of_track.iter().enumerate().filter(|(track, _)| !users[*track].is_empty()) {
             uses.iter().for_each(|u| on[u.segment].push(track));
         }
         on.iter_mut().for_each(|tracks: &mut Vec<usize>| tracks.dedup());
         let mut corners: BTreeMap<usize, VertexId> = BTreeMap::new();
-        for (track, edge) in edges.iter().enumerate() {
+        for (track, edge) in joins.edges.iter().enumerate() {
             let ends = model.edges[edge.index()].vertices;
             for (anchor, vertex) in [(2 * track, ends.0), (2 * track + 1, ends.1)] {
                 let Some(junction) = joins.pieces.of_anchor[anchor] else { continue };
@@ -232,7 +231,7 @@ impl<'a> Sharing<'a> {
                 }
             }
         }
-        Self { model, edges, joins, on, users, order, near, corners }
+        Self { model, joins, on, users, order, near, corners }
     }
 
     fn all(&self, faces: &[PatchId]) -> SharedEdges {
@@ -242,7 +241,7 @@ impl<'a> Sharing<'a> {
             job::poll();
             let mut border = Vec::new();
             for (edge, against) in self.model.border_of(*face) {
-                let Ok(track) = self.edges.binary_search(&edge) else { continue };
+                let Ok(track) = self.joins.edges.binary_search(&edge) else { continue };
                 for run in self.runs(track, against) {
                     let place = *known.entry(run.iter().map(|a| a.0).min().unwrap_or(0)).or_insert_with(|| {
                         found.edges.push(self.edge(track, &run));
@@ -280,7 +279,7 @@ impl<'a> Sharing<'a> {
         let ends = |(segment, against): (usize, bool)| {
             if against { (segments[segment].ends.1, segments[segment].ends.0) } else { segments[segment].ends }
         };
-        let own = self.model.edges[self.edges[track].index()].vertices;
+        let own = self.model.edges[self.joins.edges[track].index()].vertices;
         let corner = |junction: usize, other: VertexId| self.corners.get(&junction).copied().unwrap_or(other);
         let mut ends = (corner(ends(run[0]).0, own.0), corner(ends(run[run.len() - 1]).1, own.1));
         // The edge runs as its geometry does.
@@ -295,13 +294,13 @@ impl<'a> Sharing<'a> {
         faces.sort_by_key(|face| self.order.get(face).copied());
         let whole = |part: &&EdgePart| part.s == (0.0, self.model.edges[part.edge.index()].length);
         let mut lone = courses.iter().filter(|course| course.len() == 1).map(|course| &course[0]);
-        let told = lone.find(whole).map_or(self.edges[giver], |part| part.edge);
+        let told = lone.find(whole).map_or(self.joins.edges[giver], |part| part.edge);
         SharedEdge { courses, faces, ends, told, near: self.near }
     }
 
     /// The parts of a track along a run.
     fn course(&self, track: usize, run: &[(usize, bool)]) -> Course {
-        let (edge, uses) = (self.edges[track], &self.joins.pieces.of_track[track]);
+        let (edge, uses) = (self.joins.edges[track], &self.joins.pieces.of_track[track]);
         let mut course = Course::new();
         for (segment, backwards) in run {
             let Some(place) = uses.iter().find(|u| u.segment == *segment) else { continue };

@@ -17,8 +17,10 @@ use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::network::Network;
 
-/// Edges of a shell as tracks, and their segments.
+/// Edges of some surfaces as tracks, and their segments.
 pub(super) struct Joins {
+    /// The edges, ascending; tracks and their uses of segments come in this order.
+    pub edges: Vec<EdgeId>,
     pub parts: Vec<Part>,
     pub pieces: Segments,
 }
@@ -27,8 +29,6 @@ pub(super) struct Joins {
 pub(super) struct Sewn {
     /// How far borders that are one edge may be apart, model units.
     pub near: f64,
-    /// The edges, ascending.
-    pub edges: Vec<EdgeId>,
     pub joins: Joins,
     /// Patches thinner than that, ascending.
     pub slivers: Vec<PatchId>,
@@ -52,16 +52,17 @@ impl Model {
     /// E617 (three faces at an edge), E618 (open and not connected) or E711 (borders just beyond a stated reach).
     pub fn shell(&self, request: &ShellRequest, network: &Network, tolerance: &Tolerance, sink: &mut Vec<Fault>) -> Result<Shell> {
         let members: BTreeSet<SurfaceId> = request.surfaces.iter().copied().collect();
-        let Sewn { near, edges, joins, slivers, usages } = self.sewn(request, &members, network, tolerance);
+        let sewn = self.sewn(request, &members, network, tolerance);
+        let Sewn { near, joins, slivers, usages } = &sewn;
         let pieces = &joins.pieces;
         let free: Vec<usize> = (0..usages.len()).filter(|a| usages[*a].len() == 1).collect();
-        let seams = Seams { model: self, edges: &edges, joins: &joins };
+        let seams = Seams { model: self, joins };
         seams.refuse_gaps(request, &free)?;
         if !request.branches {
-            self.manifold(request, &joins, &usages)?;
+            self.manifold(request, joins, usages)?;
         }
-        let sides = self.orient(request, &joins, (&usages, &slivers), tolerance, sink)?;
-        seams.report(request, &slivers, tolerance, sink);
+        let sides = self.orient(request, &sewn, tolerance, sink)?;
+        seams.report(request, slivers, tolerance, sink);
         if let Some(longest) = free.iter().copied().max_by(|a, b| pieces.segments[*a].length().total_cmp(&pieces.segments[*b].length())) {
             let length = free.iter().map(|a| pieces.segments[*a].length()).sum();
             let at = joins.middle(longest);
@@ -74,7 +75,7 @@ impl Model {
             name: request.name.clone(),
             origin: request.origin,
             surfaces: sides,
-            near,
+            near: *near,
             closed: free.is_empty() && usages.iter().all(|u| u.len() <= 2),
             free,
         })
@@ -96,14 +97,14 @@ impl Model {
 
     /// Edges of some surfaces, joined where their borders are up to `near` apart, model units.
     pub(super) fn sewn_over(&self, members: &BTreeSet<SurfaceId>, near: f64, network: &Network, tolerance: &Tolerance) -> Sewn {
-        let (edges, joins) = self.joins(members, near, network, tolerance);
-        let slivers = self.slivers(members, (&edges, &joins.pieces), near);
-        let usages = usages(self, (&edges, &joins.pieces), |s, p| members.contains(&s) && slivers.binary_search(&p).is_err());
-        Sewn { near, edges, joins, slivers, usages }
+        let joins = self.joins(members, near, network, tolerance);
+        let slivers = self.slivers(members, &joins, near);
+        let usages = usages(self, &joins, |s, p| members.contains(&s) && slivers.binary_search(&p).is_err());
+        Sewn { near, joins, slivers, usages }
     }
 
     /// Edges of some surfaces, cut into segments; borders up to `near` apart are one.
-    pub(super) fn joins(&self, members: &BTreeSet<SurfaceId>, near: f64, network: &Network, tolerance: &Tolerance) -> (Vec<EdgeId>, Joins) {
+    pub(super) fn joins(&self, members: &BTreeSet<SurfaceId>, near: f64, network: &Network, tolerance: &Tolerance) -> Joins {
         let edges: Vec<EdgeId> = (0..self.edges.len())
             .map(EdgeId::at)
             .filter(|e| self.edges[e.index()].users.iter().any(|(p, _)| members.contains(&self.patches[p.index()].surface)))
@@ -124,13 +125,13 @@ impl Model {
             })
             .collect();
         let pieces = segments(&parts, &anchors, tolerance);
-        (edges, Joins { parts, pieces })
+        Joins { edges, parts, pieces }
     }
 
     /// Patches of some surfaces that are thinner than what was glued, ascending.
-    pub(super) fn slivers(&self, members: &BTreeSet<SurfaceId>, (edges, pieces): (&[EdgeId], &Segments), near: f64) -> Vec<PatchId> {
+    pub(super) fn slivers(&self, members: &BTreeSet<SurfaceId>, joins: &Joins, near: f64) -> Vec<PatchId> {
         let mut found: Vec<PatchId> = members.iter().flat_map(|s| self.patches_of(*s)).collect();
-        found.retain(|p| self.is_sliver(*p, (edges, pieces), near));
+        found.retain(|p| self.is_sliver(*p, &joins.edges, &joins.pieces, near));
         found.sort_unstable();
         found
     }
@@ -152,19 +153,12 @@ impl Model {
     }
 
     /// Each surface with its side: `true` for the other one. E616 for a skin with one side, E618 for open ones that do not hang together.
-    fn orient(
-        &self,
-        request: &ShellRequest,
-        joins: &Joins,
-        (usages, slivers): (&[Vec<Usage>], &[PatchId]),
-        tolerance: &Tolerance,
-        sink: &mut Vec<Fault>,
-    ) -> Result<Vec<(SurfaceId, bool)>> {
-        let whole: Vec<SurfaceId> = request.surfaces.iter().copied().filter(|s| !self.is_thin(*s, slivers)).collect();
-        let mut components = components(&whole, usages);
+    fn orient(&self, request: &ShellRequest, sewn: &Sewn, tolerance: &Tolerance, sink: &mut Vec<Fault>) -> Result<Vec<(SurfaceId, bool)>> {
+        let whole: Vec<SurfaceId> = request.surfaces.iter().copied().filter(|s| !self.is_thin(*s, &sewn.slivers)).collect();
+        let mut components = components(&whole, &sewn.usages);
         if let Some(one_sided) = components.iter().find_map(|c| c.one_sided.as_ref()) {
             let (a, b) = (self.origin_of(one_sided.faces.0), self.origin_of(one_sided.faces.1));
-            let at = joins.middle(one_sided.segment);
+            let at = sewn.joins.middle(one_sided.segment);
             return Err(ModelFault::ShellNotOrientable { shell: request.origin, a, b, at }.into());
         }
         match components.as_slice() {

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::glue::root;
-use super::segments::Segments;
-use super::topology::{EdgeId, Model, PatchId, SurfaceId};
+use super::shells::Joins;
+use super::topology::{Model, PatchId, SurfaceId};
 use crate::base::fault::Result;
 use crate::base::tolerance::Tolerance;
 use crate::network::Network;
@@ -29,13 +29,9 @@ pub(super) struct Component {
 }
 
 /// The uses of each segment, in the order of the edges.
-pub(super) fn usages(
-    model: &Model,
-    (edges, pieces): (&[EdgeId], &Segments),
-    is_member: impl Fn(SurfaceId, PatchId) -> bool,
-) -> Vec<Vec<Usage>> {
-    let mut usages: Vec<Vec<Usage>> = vec![Vec::new(); pieces.segments.len()];
-    for (edge, uses) in edges.iter().zip(&pieces.of_track) {
+pub(super) fn usages(model: &Model, joins: &Joins, is_member: impl Fn(SurfaceId, PatchId) -> bool) -> Vec<Vec<Usage>> {
+    let mut usages: Vec<Vec<Usage>> = vec![Vec::new(); joins.pieces.segments.len()];
+    for (edge, uses) in joins.edges.iter().zip(&joins.pieces.of_track) {
         for (patch, against) in &model.edges[edge.index()].users {
             let surface = model.patches[patch.index()].surface;
             if is_member(surface, *patch) {

@@ -140,14 +140,15 @@ pub struct Model {
 impl Model {
     /// Splits surfaces into patches at their kinks and glues edges and vertices.
     pub fn build(surfaces: Vec<Named>, network: &Network, tolerance: &Tolerance, job: &Job) -> Result<Self> {
-        Self::build_cut(surfaces, &[], (network, tolerance), job)
+        Self::build_cut(surfaces, &[], network, tolerance, job)
     }
 
     /// The same, cut along further lines of some surfaces.
     pub fn build_cut(
         surfaces: Vec<Named>,
         lines: &[(SurfaceId, Lines)],
-        (network, tolerance): (&Network, &Tolerance),
+        network: &Network,
+        tolerance: &Tolerance,
         job: &Job,
     ) -> Result<Self> {
         let none = Lines::default();

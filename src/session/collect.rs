@@ -148,7 +148,7 @@ pub fn topology(model: &Model, shells: usize) -> TopologyCounts {
 }
 
 /// A shell: how it is closed, and what it measures; how its faces join only when `full`. What is said of it goes to `said`.
-pub fn shell(cx: &mut Cx, shell: &ShellValue, (tolerance, full): (&Tolerance, bool), said: &mut Vec<Fault>) -> Result<ShellRow, Halt> {
+pub fn shell(cx: &mut Cx, shell: &ShellValue, tolerance: &Tolerance, full: bool, said: &mut Vec<Fault>) -> Result<ShellRow, Halt> {
     let glued = cx.glued(ModuleId::MAIN, shell)?;
     let (scene, built) = (&glued.scene, &glued.shell);
     said.extend(glued.said.iter().cloned());
@@ -157,7 +157,7 @@ pub fn shell(cx: &mut Cx, shell: &ShellValue, (tolerance, full): (&Tolerance, bo
     said.retain(|fault| news(&fault));
     let faces = built.surfaces.iter().map(|(id, _)| scene.model.patches_of(*id).count()).sum();
     let members: Vec<_> = built.surfaces.iter().map(|(id, _)| *id).collect();
-    let contacts = if full { scene.model.contacts((&members, built.near), (&scene.network, tolerance), |_, _| true) } else { Vec::new() };
+    let contacts = if full { scene.model.contacts(&members, built.near, &scene.network, tolerance, |_, _| true) } else { Vec::new() };
     Ok(ShellRow {
         name: shell.name.to_string(),
         faces,
@@ -174,7 +174,7 @@ pub fn shell(cx: &mut Cx, shell: &ShellValue, (tolerance, full): (&Tolerance, bo
 pub const QUICK_ELEMENTS: usize = 200_000;
 
 /// A mesh: counts, quality and groups; chord error (of its faces in `reuse` as it was) and hash only when `full` or quick.
-pub fn mesh(name: &str, mesh: &Mesh, tolerance: &Tolerance, (full, reuse): (bool, Option<&Reuse>)) -> MeshRow {
+pub fn mesh(name: &str, mesh: &Mesh, tolerance: &Tolerance, full: bool, reuse: Option<&Reuse>) -> MeshRow {
     let full = full || mesh.triangles.len() + mesh.quads.len() <= QUICK_ELEMENTS;
     let quality = mesh.quality();
     let degrees = crate::lang::values::units::degrees;

@@ -38,7 +38,7 @@ pub fn along_curves(scene: Scene, plan: &mut Plan, tolerance: &Tolerance, job: &
     if cuts.is_empty() {
         return Ok(scene);
     }
-    let model = Model::build_cut(scene.model.surfaces.clone(), &cuts, (&scene.network, tolerance), job)?;
+    let model = Model::build_cut(scene.model.surfaces.clone(), &cuts, &scene.network, tolerance, job)?;
     let cut = Scene { model: model.into(), network: scene.network.clone() };
     let rules = plan.rules.iter_mut().map(|rule| &mut rule.target);
     for target in rules.chain(plan.groups.iter_mut().flat_map(|group| &mut group.members)) {

@@ -22,7 +22,7 @@ pub(super) fn surfaces_of(value: &Value) -> Vec<&Surface> {
 }
 
 /// A surface by itself: its patches share their edges with each other only.
-pub(super) fn lone(cx: &Cx, scene: &Scene, surface: &Surface, (tolerance, colors): (&Tolerance, &Colors)) -> Result<Faces, Halt> {
+pub(super) fn lone(cx: &Cx, scene: &Scene, surface: &Surface, tolerance: &Tolerance, colors: &Colors) -> Result<Faces, Halt> {
     let (id, other) = scene.find(surface).ok_or(Halt::Bug("a surface is not in its scene"))?;
     let near = scene.model.reach([id], None, tolerance);
     let shell = Shell { name: String::new(), origin: surface.origin(), surfaces: vec![(id, other)], near, closed: false, free: Vec::new() };
@@ -33,7 +33,7 @@ pub(super) fn lone(cx: &Cx, scene: &Scene, surface: &Surface, (tolerance, colors
 }
 
 /// A shell: a solid where it closes.
-pub(super) fn whole(cx: &Cx, scene: &Scene, shell: &ShellValue, (tolerance, colors): (&Tolerance, &Colors)) -> Result<Faces, Halt> {
+pub(super) fn whole(cx: &Cx, scene: &Scene, shell: &ShellValue, tolerance: &Tolerance, colors: &Colors) -> Result<Faces, Halt> {
     // What is to be said of it was said where it is declared.
     let built = scene.shell(shell, tolerance, &mut Vec::new())?;
     let solid = built.closed;

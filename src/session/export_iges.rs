@@ -56,7 +56,7 @@ pub(super) fn iges(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<
             Value::Shell(shell) => match &scene {
                 Some(scene) => {
                     let name = cx.body_said(shell).map_or(&shell.name, |[_, only]| only).to_string();
-                    let faces = whole(cx, scene, shell, (&tolerance, &colors))?;
+                    let faces = whole(cx, scene, shell, &tolerance, &colors)?;
                     things.push(Thing { name, ..one(cx, *origin, Shown::Faces(Box::new(faces))) });
                 }
                 None => {

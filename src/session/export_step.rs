@@ -43,10 +43,10 @@ pub(super) fn step(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<
             Value::Surface(surface) => {
                 let measured = Measured { area: Some(measure::area(surface)), volume: None };
                 let name = cx.name_in_file(surface).unwrap_or_else(|| cx.surface_name(surface));
-                (name, Shown::Faces(Box::new(lone(cx, &scene, surface, (&tolerance, &colors))?)), measured)
+                (name, Shown::Faces(Box::new(lone(cx, &scene, surface, &tolerance, &colors)?)), measured)
             }
             Value::Shell(shell) => {
-                let faces = whole(cx, &scene, shell, (&tolerance, &colors))?;
+                let faces = whole(cx, &scene, shell, &tolerance, &colors)?;
                 let measured = measured(&faces);
                 (cx.body_said(shell).map_or(&shell.name, |[own, _]| own).to_string(), Shown::Faces(Box::new(faces)), measured)
             }

@@ -24,6 +24,15 @@ pub enum Depth {
     Files,
 }
 
+/// What a run writes, and where.
+struct Destination<'a> {
+    /// The folder of outputs; the script's own where none is given.
+    folder: Option<&'a Path>,
+    /// The one picture that is written instead of the outputs of the script.
+    picture: Option<&'a Wanted>,
+    outputs: Outputs,
+}
+
 /// One script and what its last run left.
 pub struct Live {
     name: String,
@@ -61,35 +70,34 @@ impl Live {
     /// Fails when the folder of the script cannot be read.
     pub fn run(
         &mut self,
-        (text, sets): (&str, &[(String, String)]),
+        text: &str,
+        sets: &[(String, String)],
         depth: Depth,
         job: &Job,
         look: &mut (dyn FnMut(&mut Cx<'_>) + Send),
     ) -> Result<Outcome, Bug> {
         let outputs = if depth == Depth::Files { Outputs::Written } else { Outputs::Counted };
-        self.go((text, sets), (None, None, outputs), depth, job, look)
+        self.evaluate(text, sets, Destination { folder: None, picture: None, outputs }, depth, job, look)
     }
 
     /// Runs the text and writes one picture into a folder, and nothing else.
     ///
     /// Fails as [`Live::run`].
-    pub fn draw(
-        &mut self,
-        (text, sets): (&str, &[(String, String)]),
-        (folder, wanted): (&Path, &Wanted),
-        job: &Job,
-    ) -> Result<Outcome, Bug> {
-        self.go((text, sets), (Some(folder), Some(wanted), Outputs::Written), Depth::Values, job, &mut |_| {})
+    pub fn draw(&mut self, text: &str, sets: &[(String, String)], folder: &Path, wanted: &Wanted, job: &Job) -> Result<Outcome, Bug> {
+        let to = Destination { folder: Some(folder), picture: Some(wanted), outputs: Outputs::Written };
+        self.evaluate(text, sets, to, Depth::Values, job, &mut |_| {})
     }
 
-    fn go(
+    fn evaluate(
         &mut self,
-        (text, sets): (&str, &[(String, String)]),
-        (folder, picture, outputs): (Option<&Path>, Option<&Wanted>, Outputs),
+        text: &str,
+        sets: &[(String, String)],
+        to: Destination,
         depth: Depth,
         job: &Job,
         look: &mut (dyn FnMut(&mut Cx<'_>) + Send),
     ) -> Result<Outcome, Bug> {
+        let Destination { folder, picture, outputs } = to;
         let disk = Disk::new(self.script.as_deref(), folder, &self.allow, outputs).map_err(|error| Bug { what: error.to_string() })?;
         let disk = disk.with_unsaved(self.unsaved.clone());
         let clock = self.clock.clone();

@@ -38,7 +38,8 @@ impl Shapes {
 /// curve was made by.
 pub fn inputs(
     curves: &[(String, &Chain)],
-    (modeling, surfaces): (Vec<&Chain>, Vec<&Surface>),
+    modeling: Vec<&Chain>,
+    surfaces: &[&Surface],
     name: &dyn Fn(Origin) -> String,
     tolerance: &Tolerance,
 ) -> Vec<Input> {
@@ -54,7 +55,7 @@ pub fn inputs(
     }
     let mut shapes = Shapes::default();
     inputs.iter().enumerate().for_each(|(i, input)| shapes.add(&input.curve, i));
-    add_nameless(below(), name, (&mut inputs, &mut shapes), tolerance);
+    add_nameless(below(), name, &mut inputs, &mut shapes, tolerance);
     for run in modeling.into_iter().chain(below()).flat_map(Chain::runs) {
         let Some(index) = shapes.find(&run.curve, &inputs) else { continue };
         let length = run.curve.length();
@@ -70,7 +71,8 @@ pub fn inputs(
 fn add_nameless<'p>(
     chains: impl Iterator<Item = &'p Chain>,
     name: &dyn Fn(Origin) -> String,
-    (inputs, shapes): (&mut Vec<Input>, &mut Shapes),
+    inputs: &mut Vec<Input>,
+    shapes: &mut Shapes,
     tolerance: &Tolerance,
 ) {
     let runs = chains.flat_map(Chain::runs).filter(|run| shapes.find(&run.curve, inputs).is_none());

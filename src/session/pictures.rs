@@ -86,12 +86,12 @@ impl Stage<'_> {
 }
 
 /// Writes one picture; gives its row. `model` is the name of the script without its ending.
-pub fn write(cx: &mut Cx, spec: &PictureSpec, model: &str, to: (&dyn Files, Outputs)) -> Result<OutputRow, Halt> {
-    let within = Budget::new(FILE_WORK).within(|| written(cx, spec, model, to));
+pub fn write(cx: &mut Cx, spec: &PictureSpec, model: &str, files: &dyn Files, outputs: Outputs) -> Result<OutputRow, Halt> {
+    let within = Budget::new(FILE_WORK).within(|| written(cx, spec, model, files, outputs));
     within.unwrap_or_else(|Exceeded| Err(FileFault::TooMuchWork { of: spec.origin, path: spec.path.clone() }.into()))
 }
 
-fn written(cx: &mut Cx, spec: &PictureSpec, model: &str, (files, outputs): (&dyn Files, Outputs)) -> Result<OutputRow, Halt> {
+fn written(cx: &mut Cx, spec: &PictureSpec, model: &str, files: &dyn Files, outputs: Outputs) -> Result<OutputRow, Halt> {
     let format = format_of(spec)?;
     let tolerance = cx.tolerance()?;
     let sound = cx.sound(ModuleId::MAIN)?;
@@ -291,7 +291,7 @@ fn draw(cx: &mut Cx, spec: &PictureSpec, things: &Things, stage: &Stage) -> Resu
     let borders = spec.show.borders.unwrap_or(true);
     if borders && !drawn.is_empty() {
         let near = things.near.max(model.reach(drawn.iter().copied(), None, &stage.tolerance));
-        drawing.lines.extend(lines::borders((model, &stage.scene.network), (&drawn, near), fine, &stage.tolerance));
+        drawing.lines.extend(lines::borders(model, &stage.scene.network, &drawn, near, fine, &stage.tolerance));
     }
     let meshes = latest(&things.meshes);
     let meshes: Vec<&(Arc<Mesh>, BTreeSet<&str>)> =
@@ -343,7 +343,7 @@ fn folds(meshes: &[&(Arc<Mesh>, BTreeSet<&str>)], near: f64, stage: &Stage) -> l
     let own = (0..model.surfaces.len()).map(SurfaceId::at);
     let members: BTreeSet<SurfaceId> = own.filter(|id| names.contains(model.surfaces[id.index()].name.as_str())).collect();
     let near = near.max(model.reach(members.iter().copied(), None, &stage.tolerance));
-    lines::Folds::new((model, &stage.scene.network), (&members, near), &stage.tolerance)
+    lines::Folds::new(model, &stage.scene.network, &members, near, &stage.tolerance)
 }
 
 fn drawn_as_surface(mesh: &Mesh, stage: &Stage, drawn: &BTreeSet<SurfaceId>) -> bool {

@@ -16,7 +16,7 @@ use crate::mesh::request::plan::{GroupRequest, Place, Refine, Target};
 use crate::mesh::{Plan, Rule};
 use crate::model::carry::Stage;
 use crate::model::{Model, SharedEdge, Shell, SurfaceId};
-use crate::network::{Chain, Network};
+use crate::network::Chain;
 use crate::surface::Surface;
 
 /// Finds what the values of a mesh stand for.
@@ -66,17 +66,17 @@ impl Faces {
 
     /// Puts each face into the plan once, glues those by themselves as a shell of them would be, and gives faces that are of no closed
     /// shell the sides of the shell that they would make; `flip` turns all.
-    pub fn settle(&self, plan: &mut Plan, (model, network): (&Model, &Network), flip: bool, tolerance: &Tolerance) -> Result<(), Fault> {
+    pub fn settle(&self, plan: &mut Plan, scene: &Scene, flip: bool, tolerance: &Tolerance) -> Result<(), Fault> {
         // A face of several shells, or one that is listed again, is there once.
         let mut listed = BTreeSet::new();
         plan.surfaces.retain(|(surface, _)| listed.insert(*surface));
         let alone: Vec<SurfaceId> = plan.surfaces.iter().map(|s| s.0).filter(|s| !plan.glue.contains_key(s)).collect();
-        let near = model.reach(alone.iter().copied(), None, tolerance);
+        let near = scene.model.reach(alone.iter().copied(), None, tolerance);
         plan.glue.extend(alone.into_iter().map(|s| (s, near)));
         let mut loose = self.loose.clone();
         loose.retain(|(s, _)| !self.closed.contains(s));
         let near = loose.iter().filter_map(|(s, _)| plan.glue.get(s)).fold(near, |near, own| near.max(*own));
-        let sides: BTreeMap<SurfaceId, bool> = model.outward(&loose, near, network, tolerance)?.into_iter().collect();
+        let sides: BTreeMap<SurfaceId, bool> = scene.model.outward(&loose, near, &scene.network, tolerance)?.into_iter().collect();
         for (surface, other) in &mut plan.surfaces {
             *other = sides.get(surface).copied().unwrap_or(*other) != flip;
         }
@@ -102,10 +102,10 @@ pub fn of(cx: &mut Cx, module: ModuleId, spec: &MeshSpec, sink: &mut Vec<Fault>)
     plan.origin = spec.origin;
     let mut faces = Faces::default();
     for (value, _) in &spec.things {
-        finder.add(cx, (&mut plan, &mut faces), value, sink)?;
+        finder.add(cx, &mut plan, &mut faces, value, sink)?;
     }
     let flip = spec.settings.flip.filter(|said| said.0);
-    faces.settle(&mut plan, (&scene.model, &scene.network), flip.is_some(), &tolerance)?;
+    faces.settle(&mut plan, &scene, flip.is_some(), &tolerance)?;
     if let (Some((_, rule)), true) = (flip, plan.surfaces.is_empty()) {
         sink.push(MeshFault::RuleUnused { rule, why: "`flip` is for faces, and there is none here".to_owned() }.into());
     }
@@ -171,7 +171,7 @@ pub fn of(cx: &mut Cx, module: ModuleId, spec: &MeshSpec, sink: &mut Vec<Fault>)
             let mut faces: Vec<SurfaceId> = plan.surfaces.iter().map(|s| s.0).collect();
             faces.sort_unstable();
             faces.dedup();
-            let imprint = scene.model.imprint(&faces, origin, (&scene.network, &tolerance), cx.job)?;
+            let imprint = scene.model.imprint(&faces, origin, &scene.network, &tolerance, cx.job)?;
             plan.imprint = Some((imprint, origin));
         }
     } else {
@@ -214,7 +214,7 @@ pub(super) fn surfaces_of(value: &Value) -> Vec<&Surface> {
 
 impl Finder<'_> {
     /// Adds a thing of the `of` list.
-    fn add(&self, cx: &mut Cx, (plan, faces): (&mut Plan, &mut Faces), value: &Value, sink: &mut Vec<Fault>) -> Result<(), Halt> {
+    fn add(&self, cx: &mut Cx, plan: &mut Plan, faces: &mut Faces, value: &Value, sink: &mut Vec<Fault>) -> Result<(), Halt> {
         match value {
             Value::Surface(surface) => {
                 let found = self.scene.find_all([surface])?;

@@ -340,7 +340,7 @@ impl<'r> Run<'r> {
             let (cx, full, mut said) = (&mut self.cx, self.task.full, Vec::new());
             self.rows.allow_surfaces(shell.value.surfaces.iter());
             let what = || format!("what the shell `{}` measures", shell.value.name);
-            let row = self.rows.part(shell.value.origin, what, || collect::shell(cx, &shell.value, (tolerance, full), &mut said));
+            let row = self.rows.part(shell.value.origin, what, || collect::shell(cx, &shell.value, tolerance, full, &mut said));
             if let Some(row) = row.and_then(|row| self.take(row)) {
                 said.iter().for_each(|fault| self.cx.say(fault));
                 self.report.shells.push(row);
@@ -372,7 +372,7 @@ impl<'r> Run<'r> {
                 continue;
             }
             let _phase = self.cx.job.phase(format!("drawing {}", spec.path));
-            let row = pictures::write(&mut self.cx, &spec, &model, (self.disk, self.disk.outputs()));
+            let row = pictures::write(&mut self.cx, &spec, &model, self.disk, self.disk.outputs());
             self.written(row);
         }
     }
@@ -443,7 +443,7 @@ impl<'r> Run<'r> {
         let _phase = self.cx.job.phase(format!("drawing {}", wanted.spec.path));
         match pictures::request(&mut self.cx, wanted) {
             Ok(spec) => {
-                let row = pictures::write(&mut self.cx, &spec, &model, (self.disk, self.disk.outputs()));
+                let row = pictures::write(&mut self.cx, &spec, &model, self.disk, self.disk.outputs());
                 self.written(row);
             }
             Err(message) => self.said = Some(*message),

@@ -105,7 +105,7 @@ impl<'c> Stages<'c> {
 impl Stages<'_> {
     /// The row of a mesh in the report.
     pub(super) fn row(&self, name: &str, mesh: &Arc<Mesh>, tolerance: &Tolerance, full: bool) -> MeshRow {
-        let measured = |reuse: Option<&_>| collect::mesh(name, mesh, tolerance, (full, reuse));
+        let measured = |reuse: Option<&_>| collect::mesh(name, mesh, tolerance, full, reuse);
         match self.kept() {
             Some(mut kept) => kept.row(name, mesh, full, |reuse| measured(Some(reuse))),
             None => measured(None),
@@ -153,8 +153,9 @@ impl Pipeline for Stages<'_> {
     fn network(&self, cx: &mut Cx, module: ModuleId, parts: &Parts) -> Result<Arc<Network>, Halt> {
         let tolerance = cx.tolerance()?;
         let curves: Vec<(String, &Chain)> = parts.curves.iter().map(|c| (c.name.to_string(), &c.value)).collect();
-        let (modeling, surfaces) = (parts.modeling.iter().map(|m| &m.value), parts.surfaces.iter().map(|s| &s.value));
-        let inputs = inputs(&curves, (modeling.collect(), surfaces.collect()), &|origin| cx.name(origin), &tolerance);
+        let modeling = parts.modeling.iter().map(|m| &m.value).collect();
+        let surfaces: Vec<_> = parts.surfaces.iter().map(|s| &s.value).collect();
+        let inputs = inputs(&curves, modeling, &surfaces, &|origin| cx.name(origin), &tolerance);
         let points: Vec<DVec3> = parts.points.iter().map(|p| p.value).collect();
         if let Some(kept) = self.kept()
             && let Some(before) = kept.networks.get(&module).filter(|before| before.fits(&inputs, &points, &tolerance))

@@ -98,7 +98,7 @@ pub fn answer(document: &Document, facts: &Facts, request: &Request, others: &Ot
 fn hover(document: &Document, facts: &Facts, position: &Value, others: &Others<'_>) -> Value {
     let text = match about(document, facts, position, others) {
         Some(About::Words(words)) => words,
-        Some(About::Declared { name, line, docs }) => told::hover(facts, document, &name, (&line, &docs)),
+        Some(About::Declared { name, line, docs }) => told::hover(facts, document, &name, &line, &docs),
         None => return Value::Null,
     };
     json!({ "contents": { "kind": "markdown", "value": text.trim_end() } })

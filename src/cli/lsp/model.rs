@@ -97,13 +97,13 @@ impl Facts {
 
 impl Running {
     /// Starts a run; gives the model back when there can be no thread.
-    pub fn start(mut live: Live, document: &Document, (depth, unsaved): (Depth, Unsaved), wanted: BTreeSet<String>) -> Option<Self> {
+    pub fn start(mut live: Live, document: &Document, depth: Depth, unsaved: Unsaved, wanted: BTreeSet<String>) -> Option<Self> {
         let job = interrupt::own_job();
         let (uri, revision, text, watched) = (document.uri.clone(), document.revision, document.text.clone(), job.clone());
         live.set_unsaved(unsaved);
         let work = move || {
             let (mut names, mut all) = (Told::default(), true);
-            let ran = live.run((&text, &[]), depth, &watched, &mut |cx| (names, all) = told(cx, &wanted));
+            let ran = live.run(&text, &[], depth, &watched, &mut |cx| (names, all) = told(cx, &wanted));
             let facts = match ran {
                 Ok(outcome) if outcome.interrupted => None,
                 Ok(outcome) => Some(facts(outcome, names)),

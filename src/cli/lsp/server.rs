@@ -132,7 +132,7 @@ impl<'c> Server<'c> {
         // What is seen of all comes with what is seen of some.
         open.due[..=depth].fill(None);
         let live = open.live.take().unwrap_or_else(|| model(&open.document));
-        self.running = Running::start(live, &open.document, (DEPTHS[depth], unsaved), open.wanted.clone());
+        self.running = Running::start(live, &open.document, DEPTHS[depth], unsaved, open.wanted.clone());
     }
 
     /// Texts of all open files, by resolved path.

@@ -110,7 +110,7 @@ fn of_mesh(row: &MeshRow) -> String {
 }
 
 /// A declared name: its value where one is known, marked when that is of an earlier text, else how it is declared.
-pub fn hover(facts: &Facts, document: &Document, name: &str, (line, docs): (&str, &str)) -> String {
+pub fn hover(facts: &Facts, document: &Document, name: &str, line: &str, docs: &str) -> String {
     let current = facts.revision == document.revision && facts.depth.is_some();
     let (line, note) = match facts.seen.get(name) {
         Some(seen) if seen.revision == document.revision => (seen.line.as_str(), ""),

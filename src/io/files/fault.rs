@@ -254,7 +254,7 @@ impl FileFault {
             Self::Repaired { of, path, at } => {
                 Report::new("W810", format!("\"{path}\"{}: {}", at.place(), at.what)).at(*of, "imported here")
             }
-            Self::Unusable { of, path, total, faces, share, whole } => unusable(*of, (path, *total), (faces, *share), *whole),
+            Self::Unusable { of, path, total, faces, share, whole } => unusable(*of, path, *total, faces, *share, *whole),
             Self::TooLarge { of, path, bytes, limit } => {
                 Report::new("E811", format!("\"{path}\" has {}, more than the limit of {}", mebibytes(*bytes), mebibytes(*limit)))
                     .at(*of, "named here")
@@ -319,7 +319,7 @@ impl FileFault {
 const FACES_TOLD: usize = 10;
 
 /// W726: how many faces are missing, how much that is, and a line for each.
-fn unusable(of: Origin, (path, total): (&str, usize), (faces, share): (&[Malformed], Option<Share>), whole: bool) -> Report {
+fn unusable(of: Origin, path: &str, total: usize, faces: &[Malformed], share: Option<Share>, whole: bool) -> Report {
     let count = if total == 1 { "the only face".to_owned() } else { format!("{} of {total} faces", faces.len()) };
     let share = match share {
         Some(Share::Stated(share)) => format!("{:.0} % of the area", 100.0 * share),

@@ -112,7 +112,7 @@ fn write(deck: &Deck, out: &mut dyn Write) -> io::Result<Vec<Loss>> {
         let first = section.kind.first_number(mesh);
         write_records(out, section.elements.len(), |i, text| {
             let element = section.elements.start + i;
-            push_card(mesh, section, (element, first + element as u64), text);
+            push_card(mesh, section, element, first + element as u64, text);
         })?;
     }
     writeln!(out, "ENDDATA")?;
@@ -213,7 +213,7 @@ fn off_axis(along: [f64; 3]) -> usize {
 }
 
 /// An element: eight fields on a line, the rest on a continuation.
-fn push_card(mesh: &Mesh, section: &Section, (element, number): (usize, u64), text: &mut Vec<u8>) {
+fn push_card(mesh: &Mesh, section: &Section, element: usize, number: u64, text: &mut Vec<u8>) {
     text.extend_from_slice(section.card.as_bytes());
     text.resize(text.len() + 8 - section.card.len(), b' ');
     push_count_padded(text, number, 8);

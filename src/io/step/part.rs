@@ -159,12 +159,12 @@ impl Maker<'_> {
             if group.is_empty() {
                 continue;
             }
-            self.bundle(bundle, group, &mut solid_name, (placed.instance, &assembly.instances[placed.instance]), alone);
+            self.bundle(bundle, group, &mut solid_name, placed.instance, &assembly.instances[placed.instance], alone);
         }
     }
 
     /// Puts a solid, shell or set into its lists.
-    fn bundle(&mut self, bundle: &Bundle, mut group: Group, solid: &mut String, (place, instance): (usize, &Instance), alone: bool) {
+    fn bundle(&mut self, bundle: &Bundle, mut group: Group, solid: &mut String, place: usize, instance: &Instance, alone: bool) {
         let own = given(self.step.file.parameters(bundle.entity).text(0));
         let all = [Place::Point as fn(usize) -> Place, Place::Curve, Place::Surface];
         let members = [&group.points, &group.curves, &group.surfaces];

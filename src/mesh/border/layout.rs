@@ -183,7 +183,7 @@ impl Layout {
         let (mut face_of, mut slivers): (Vec<Option<usize>>, Vec<PatchId>) = (Vec::with_capacity(patches.len()), Vec::new());
         for (patch, flipped) in patches {
             let junction = |v| vertices.binary_search(&v).ok().and_then(|at| layout.pieces.of_anchor[at]);
-            if input.model.is_sliver(*patch, (&layout.edges, &layout.pieces), reach(input, std::iter::once(*patch))) {
+            if input.model.is_sliver(*patch, &layout.edges, &layout.pieces, reach(input, std::iter::once(*patch))) {
                 face_of.push(None);
                 slivers.push(*patch);
                 continue;

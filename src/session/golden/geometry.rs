@@ -142,7 +142,7 @@ pub fn differs(old: &Shape, new: &Shape, within: f64, unit: &str) -> Option<Stri
         let moved: Vec<(f64, DVec3)> = come.iter().map(|p| (near.distance(*p, within), *p)).collect();
         return said_moved(&moved, within, unit);
     }
-    Some(said_apart(old, new, (&gone, &come), (within, unit)))
+    Some(said_apart(old, new, &gone, &come, within, unit))
 }
 
 fn said_moved(moved: &[(f64, DVec3)], within: f64, unit: &str) -> Option<String> {
@@ -152,7 +152,7 @@ fn said_moved(moved: &[(f64, DVec3)], within: f64, unit: &str) -> Option<String>
     Some(format!("{nodes} {} {unit} at {}{times}", rounded(farthest.0, 2), place(farthest.1)))
 }
 
-fn said_apart(old: &Shape, new: &Shape, (gone, come): (&[DVec3], &[DVec3]), (within, unit): (f64, &str)) -> String {
+fn said_apart(old: &Shape, new: &Shape, gone: &[DVec3], come: &[DVec3], within: f64, unit: &str) -> String {
     let farthest = |points: &[DVec3], other: &Shape| {
         let triangles = other.triangles();
         let near = Near::new(&triangles);

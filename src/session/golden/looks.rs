@@ -86,7 +86,7 @@ pub fn of(cx: &mut Cx) -> Looks {
         looks.curves = par::map(order.len(), |k| {
             let curve = &network.curves[order[k]];
             let whole = Chain::of_curve(&curve.curve);
-            let mut look = of_chain(&whole, &Moments::of_curve(&curve.curve), !curves.contains(&curve.name), (&tolerance, unit));
+            let mut look = of_chain(&whole, &Moments::of_curve(&curve.curve), !curves.contains(&curve.name), &tolerance, unit);
             look.pairs.extend(of_box(curve.curve.bbox(), unit));
             look
         });
@@ -94,7 +94,7 @@ pub fn of(cx: &mut Cx) -> Looks {
         looks.modeling = par::map(chains.len(), |k| {
             let (name, _, chain) = &chains[k];
             let declared = modeling.contains(name) || curves.contains(name);
-            of_chain(chain, &Moments::of_chain(chain), !declared, (&tolerance, unit))
+            of_chain(chain, &Moments::of_chain(chain), !declared, &tolerance, unit)
         });
         let order = collect::surfaces_in_order(parts, model);
         looks.surfaces = par::map(order.len(), |k| {
@@ -117,7 +117,7 @@ pub fn of(cx: &mut Cx) -> Looks {
         looks.declared.insert(name.to_string());
         if let Ok(mesh) = cx.mesh(&value) {
             looks.meshes.insert(name.to_string(), of_mesh(&mesh, unit));
-            let sets = mesh.groups.iter().map(|group| of_set(&mesh, group, (&name, unit), looks.declared.contains(&group.name)));
+            let sets = mesh.groups.iter().map(|group| of_set(&mesh, group, &name, unit, looks.declared.contains(&group.name)));
             looks.sets.extend(sets);
         }
     }
@@ -158,7 +158,7 @@ fn of_sheet(moments: &Moments, unit: &str) -> Pairs {
 }
 
 /// Where a curve runs. One without a name has no direction of its own.
-fn of_chain(chain: &Chain, moments: &Moments, loose: bool, (tolerance, unit): (&Tolerance, &str)) -> Look {
+fn of_chain(chain: &Chain, moments: &Moments, loose: bool, tolerance: &Tolerance, unit: &str) -> Look {
     let (mut ends, mut round) = ([chain.start(), chain.end()], moments.side);
     let mut pairs = of_mass(moments, unit);
     if chain.is_closed(tolerance) {
@@ -221,7 +221,7 @@ fn of_mesh(mesh: &Mesh, unit: &str) -> Pairs {
 }
 
 /// What a mesh holds under a name.
-fn of_set(mesh: &Mesh, group: &Group, (name, unit): (&str, &str), declared: bool) -> Line {
+fn of_set(mesh: &Mesh, group: &Group, name: &str, unit: &str, declared: bool) -> Line {
     let places = group.nodes.iter().map(|n| mesh.nodes[*n as usize]);
     let elements = group.lines.len() + group.triangles.len() + group.quads.len();
     let made: Growing = line("set", &format!("{name} {}", group.name)).count("nodes", group.nodes.len()).count("elements", elements);

@@ -113,7 +113,7 @@ fn in_words(m: &Move, all: &[Move], allowance: Allowance) -> Vec<String> {
     match (old, new) {
         (Value::Real(a, unit), Value::Real(b, new_unit)) if unit == new_unit => {
             let Kind::Real(measure) = m.kind else { return Vec::new() };
-            vec![format!("{word} {}", change_of(measure, (*a, *b), unit, (m.times, allowance)))]
+            vec![format!("{word} {}", change_of(measure, (*a, *b), unit, m.times, allowance))]
         }
         (Value::Groups(a), Value::Groups(b)) => groups(a, b),
         (Value::Corners(a, unit), Value::Corners(b, new_unit)) if unit == new_unit => vec![corners(a, b, unit, m.times)],
@@ -169,7 +169,7 @@ fn list(old: &[f64], new: &[f64], unit: &str, times: Option<f64>) -> String {
 }
 
 /// `125.664 → 126.010 m² (+0.28 %, allowed 1e-9, 2.8e6 tolerances)`.
-fn change_of(measure: Measure, (old, new): (f64, f64), unit: &str, (times, allowance): (Option<f64>, Allowance)) -> String {
+fn change_of(measure: Measure, (old, new): (f64, f64), unit: &str, times: Option<f64>, allowance: Allowance) -> String {
     let (a, b) = two_numbers(old, new);
     let unit = match measure {
         Measure::Ratio => String::new(),

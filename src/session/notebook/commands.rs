@@ -243,7 +243,7 @@ impl Notebook {
         let wanted = Wanted { names: vec![name.to_owned()], zoom: Vec::new(), spec: PictureSpec::of_file(&end.to_string_lossy(), view) };
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let (state, job) = (self.now.state.clone(), self.job.clone());
-        let outcome = match self.live.draw((&state.text, &state.sets), (folder, &wanted), &job) {
+        let outcome = match self.live.draw(&state.text, &state.sets, folder, &wanted, &job) {
             Ok(outcome) if outcome.interrupted => return stopped(),
             Ok(outcome) => outcome,
             Err(bug) => return bug_answer(&bug),

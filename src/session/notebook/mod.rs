@@ -203,7 +203,7 @@ impl Notebook {
     fn run(&mut self, state: &State, depth: Depth, look: &mut (dyn FnMut(&mut Cx<'_>) + Send)) -> Result<Outcome, Answer> {
         let start = (self.clock)();
         let job = self.job.clone();
-        let outcome = self.live.run((&state.text, &state.sets), depth, &job, look).map_err(|bug| bug_answer(&bug))?;
+        let outcome = self.live.run(&state.text, &state.sets, depth, &job, look).map_err(|bug| bug_answer(&bug))?;
         if outcome.interrupted {
             return Err(stopped());
         }

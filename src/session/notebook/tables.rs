@@ -49,7 +49,7 @@ fn curves(parts: &Parts, network: &Network, unit: &str) -> Table {
     Table { title, columns, rows: collect::curves_in_order(parts, network).into_iter().map(|k| row(&network.curves[k])).collect() }
 }
 
-fn nodes(network: &Network, (unit, tolerance): (&str, &Tolerance)) -> Table {
+fn nodes(network: &Network, unit: &str, tolerance: &Tolerance) -> Table {
     let names = meeting(network);
     let row = |(n, node): (usize, &crate::network::graph::Node)| {
         vec![Cell::Number((n + 1) as f64), place(node.point, tolerance), Cell::Number(node.ends.len() as f64), text(names[n].join(", "))]
@@ -58,7 +58,7 @@ fn nodes(network: &Network, (unit, tolerance): (&str, &Tolerance)) -> Table {
     Table { title: String::new(), columns, rows: network.nodes.iter().enumerate().map(row).collect() }
 }
 
-fn links(network: &Network, of: &[(LinkId, bool)], (unit, tolerance): (&str, &Tolerance)) -> Table {
+fn links(network: &Network, of: &[(LinkId, bool)], unit: &str, tolerance: &Tolerance) -> Table {
     let row = |(id, against): &(LinkId, bool)| {
         let link = &network.links[id.index()];
         let (a, b) = if *against { (link.nodes.1, link.nodes.0) } else { link.nodes };
@@ -100,7 +100,7 @@ impl Notebook {
     pub(super) fn nodes(&mut self, _: &str) -> Answer {
         self.tabled(&mut |cx, network| {
             let tolerance = cx.tolerance_used().ok_or("the model has no tolerance yet")?;
-            Ok(nodes(network, (cx.unit().name, &tolerance)))
+            Ok(nodes(network, cx.unit().name, &tolerance))
         })
     }
 
@@ -109,7 +109,7 @@ impl Notebook {
             let Some(Value::Curve(chain)) = cx.value_of(name) else { return Err(format!("`{name}` is not a curve of this model")) };
             let tolerance = cx.tolerance_used().ok_or("the model has no tolerance yet")?;
             match network.links_of(&chain, &tolerance) {
-                Some(found) => Ok(links(network, &found, (cx.unit().name, &tolerance))),
+                Some(found) => Ok(links(network, &found, cx.unit().name, &tolerance)),
                 None => Err(format!("`{name}` is not in the network")),
             }
         })

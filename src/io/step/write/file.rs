@@ -42,14 +42,14 @@ pub fn sheet(things: &[Thing], nodes: &[Node], name: &str, setup: &Setup) -> Res
     for (own, uses) in tree.iter().zip(uses) {
         let whole = product::product(&mut records, application, &own.name);
         let painted = made.painted.len();
-        let items = made.put(&mut records, (things, own, uses), setup)?;
+        let items = made.put(&mut records, things, own, uses, setup)?;
         made.of_product.push(painted..made.painted.len());
         let places: Vec<Motion> = own.parts.iter().map(|part| part.motion.in_units(setup.scale.model)).collect();
-        let shape = product::shape(&mut records, (whole, &own.name), context, (items.kind(), &items.all()), &places);
+        let shape = product::shape(&mut records, whole, &own.name, context, items.kind(), &items.all(), &places);
         for (place, part) in own.parts.iter().enumerate() {
             occurrences += 1;
             let (of, inner) = &shapes[part.product];
-            let placed = product::occurrence(&mut records, (occurrences, &part.name), (*of, inner), (whole, &shape), place);
+            let placed = product::occurrence(&mut records, occurrences, &part.name, (*of, inner), (whole, &shape), place);
             if let Some((from, rgb)) = part.repaint {
                 let at = Some(product::place(&mut records, placed, &shape, place, context));
                 let own = made.painted[made.of_product[part.product].clone()].iter().filter(|painted| painted.rgb == from);
@@ -66,7 +66,7 @@ pub fn sheet(things: &[Thing], nodes: &[Node], name: &str, setup: &Setup) -> Res
     made.painted.append(&mut made.repainted);
     styles::put(&mut records, &made.painted, context);
     if let Some((whole, _)) = shapes.last() {
-        validation::put(&mut records, (things, made.thin_area), (whole.shape, context), setup);
+        validation::put(&mut records, things, made.thin_area, whole.shape, context, setup);
     }
     let off = made.off;
     let remark = (off.0 > 0.0).then(|| {
@@ -103,7 +103,9 @@ impl Made {
     fn put(
         &mut self,
         records: &mut Records,
-        (things, product, uses): (&[Thing], &assembly::Product, usize),
+        things: &[Thing],
+        product: &assembly::Product,
+        uses: usize,
         setup: &Setup,
     ) -> Result<Items, String> {
         let mut items = Items::default();

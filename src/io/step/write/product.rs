@@ -208,13 +208,7 @@ pub struct Shape {
 
 /// The shape of a product: one representation of everything in it, so that readers find each thing under its name. `places`, in units
 /// of the file, are those of its parts.
-pub fn shape(
-    records: &mut Records,
-    (product, name): (Product, &str),
-    context: Context,
-    (kind, items): (&str, &[Id]),
-    places: &[Motion],
-) -> Shape {
+pub fn shape(records: &mut Records, product: Product, name: &str, context: Context, kind: &str, items: &[Id], places: &[Motion]) -> Shape {
     let frame = records.frame(DVec3::ZERO, DVec3::Z, DVec3::X);
     let place = |to: &Motion| records.frame(to.point(DVec3::ZERO), to.vector(DVec3::Z), to.vector(DVec3::X));
     let places: Vec<Id> = places.iter().map(place).collect();
@@ -229,13 +223,7 @@ pub fn shape(
 
 /// A product in another one, at one of the places of that; `number` tells it from all others of the file. Gives the definition of its
 /// shape there.
-pub fn occurrence(
-    records: &mut Records,
-    (number, name): (usize, &str),
-    part: (Product, &Shape),
-    whole: (Product, &Shape),
-    place: usize,
-) -> Id {
+pub fn occurrence(records: &mut Records, number: usize, name: &str, part: (Product, &Shape), whole: (Product, &Shape), place: usize) -> Id {
     let used = records.put("NEXT_ASSEMBLY_USAGE_OCCURRENCE", |v| {
         v.text(&number.to_string()).text(name).text("").id(whole.0.definition).id(part.0.definition).word("$");
     });

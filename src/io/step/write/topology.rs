@@ -155,7 +155,7 @@ impl Writer<'_> {
             let (from, to) = (vertex(edge.ends.0), vertex(edge.ends.1));
             let along = Along::of(curve, self.scale)?;
             let own = along.put(records, self.scale);
-            let geometry = self.on_surfaces(records, &faces_of[k], (own, &along));
+            let geometry = self.on_surfaces(records, &faces_of[k], own, &along);
             edges.push(Some(records.put("EDGE_CURVE", |v| {
                 v.text("").id(from).id(to).id(geometry).flag(true);
             })));
@@ -164,7 +164,7 @@ impl Writer<'_> {
     }
 
     /// The curve of an edge with what it is in the parameters of its faces' surfaces, where readers need to be told.
-    fn on_surfaces(&self, records: &mut Records, faces: &[usize], (own, along): (Id, &Along)) -> Id {
+    fn on_surfaces(&self, records: &mut Records, faces: &[usize], own: Id, along: &Along) -> Id {
         let once = |face: &&usize| faces.iter().filter(|other| other == face).count() == 1;
         let mut within = Vec::new();
         for face in faces.iter().filter(once) {

@@ -6,7 +6,7 @@ use crate::io::step::write::records::{Id, Records};
 use crate::io::step::write::things::{Measured, Setup, Thing};
 
 /// Writes the sums over all things as properties of the product, without the area of what is too thin for the file.
-pub fn put(records: &mut Records, (things, thin): (&[Thing], f64), (product, context): (Id, Context), setup: &Setup) {
+pub fn put(records: &mut Records, things: &[Thing], thin: f64, product: Id, context: Context, setup: &Setup) {
     let sum = |of: fn(&Measured) -> Option<f64>| things.iter().filter_map(|t| of(&t.measured)).reduce(|a, b| a + b);
     let model = setup.scale.model;
     let kinds = [

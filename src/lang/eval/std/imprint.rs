@@ -24,7 +24,7 @@ pub(crate) fn pieces(cx: &mut Cx, surfaces: Vec<Surface>, origin: Origin) -> Res
     // What surfaces have in common depends on them alone, not on the network that all curves make.
     let network = Network::default();
     let model = Model::build(named, &network, &tolerance, cx.job)?;
-    Ok(model.imprinted(&ids, origin, (&network, &tolerance), cx.job)?)
+    Ok(model.imprinted(&ids, origin, &network, &tolerance, cx.job)?)
 }
 
 builtins! {

@@ -21,7 +21,7 @@ fn shared(scene: &Scene, (a, b): (&[Surface], Option<&[Surface]>), (near, tolera
     let theirs = b.map(places).transpose()?;
     let members: Vec<SurfaceId> = ours.iter().chain(theirs.iter().flatten()).copied().collect();
     let of = |face: crate::model::PatchId| scene.model.patches[face.index()].surface;
-    let contacts = scene.model.contacts((&members, near), (&scene.network, tolerance), |one, other| match &theirs {
+    let contacts = scene.model.contacts(&members, near, &scene.network, tolerance, |one, other| match &theirs {
         None => true,
         Some(theirs) => {
             let (one, other) = (of(one.0), of(other.0));
@@ -83,7 +83,7 @@ fn along(cx: &mut Cx, edge: &EdgeOf) -> Result<Vec<Contact>, Halt> {
     let members: Vec<SurfaceId> = if glued { own } else { (0..model.surfaces.len()).filter(near).map(SurfaceId::at).collect() };
     let reach = if glued { edge.1.near } else { tolerance.point };
     let on = |at: EdgeId| edge.1.courses.iter().flatten().any(|part| part.edge == at);
-    let mut found = model.contacts((&members, reach), (&network, &tolerance), |a, b| on(a.1) || on(b.1));
+    let mut found = model.contacts(&members, reach, &network, &tolerance, |a, b| on(a.1) || on(b.1));
     // Of a long border that several shorter ones meet, what lies beside this edge.
     found.retain(|contact| track.distance(contact.middle) <= reach.max(tolerance.point));
     Ok(found)

@@ -62,7 +62,7 @@ fn skin(cx: &mut Cx, faces: &Faces) -> Result<(Vec<EdgeOf>, SharedEdges), Halt> 
     let scene = Scene { model, network };
     let places: Vec<SurfaceId> = scene.find_all(&surfaces)?.into_iter().map(|place| place.0).collect();
     let near = scene.model.reach(places.iter().copied(), stated, &tolerance);
-    let skin = scene.model.shared_edges(&places, near, (&scene.network, &tolerance));
+    let skin = scene.model.shared_edges(&places, near, &scene.network, &tolerance);
     Ok((skin.edges.iter().map(|edge| EdgeOf(home.clone(), Arc::new(edge.clone()))).collect(), skin))
 }
 
@@ -80,7 +80,7 @@ fn creases(cx: &mut Cx, faces: &Faces, angle: f64) -> Result<Vec<EdgeOf>, Halt> 
     let surfaces = faces.surfaces();
     let places: Vec<SurfaceId> = scene.find_all(&surfaces)?.into_iter().map(|place| place.0).collect();
     let near = scene.model.reach(places.iter().copied(), faces.snap(), &tolerance);
-    let turns = scene.model.turns((&places, near), (&scene.network, &tolerance));
+    let turns = scene.model.turns(&places, near, &scene.network, &tolerance);
     let on = |edge: &EdgeOf, turn: &Turn| {
         edge.1.courses.iter().flatten().any(|part| part.edge == turn.edge && part.s.0 <= turn.s && turn.s <= part.s.1)
     };
