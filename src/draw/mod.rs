@@ -10,6 +10,8 @@ pub mod camera;
 pub mod color;
 pub mod faces;
 pub mod font;
+mod label_places;
+mod legend;
 pub mod lines;
 pub mod meshes;
 mod page;

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::export::Colors;
+use super::plan::surfaces_of;
 use crate::base::tolerance::Tolerance;
 use crate::io::cad::bodies::Faces;
 use crate::lang::eval::context::Cx;
@@ -11,15 +12,6 @@ use crate::lang::eval::scene::{Scene, side_of};
 use crate::lang::values::value::{ModuleId, ShellValue, Value};
 use crate::model::Shell;
 use crate::surface::Surface;
-
-/// The surfaces that a value is or holds.
-pub(super) fn surfaces_of(value: &Value) -> Vec<&Surface> {
-    match value {
-        Value::Surface(surface) => vec![surface],
-        Value::Shell(shell) => shell.surfaces.iter().collect(),
-        _ => Vec::new(),
-    }
-}
 
 /// A surface by itself: its patches share their edges with each other only.
 pub(super) fn lone(cx: &Cx, scene: &Scene, surface: &Surface, tolerance: &Tolerance, colors: &Colors) -> Result<Faces, Halt> {

@@ -1,7 +1,8 @@
 //! `export … to "x.igs"`: shells become solids, or trimmed surfaces in a group.
 
 use super::export::{Colors, Written, no_mesh_settings, put, unit_of};
-use super::export_faces::{layers, surfaces_of, whole};
+use super::export_faces::{layers, whole};
+use super::plan::surfaces_of;
 use crate::base::fault::Say;
 use crate::base::origin::Origin;
 use crate::io::Files;

@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use super::export::{Colors, Written, no_mesh_settings, put, unit_of};
-use super::export_faces::{layers, lone, surfaces_of, whole};
+use super::export_faces::{layers, lone, whole};
+use super::plan::surfaces_of;
 use crate::base::fault::Say;
 use crate::base::origin::Origin;
 use crate::io::cad::assembly::Node;

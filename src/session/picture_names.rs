@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 
-use super::pictures::{Stage, Things};
+use super::picture_things::Things;
+use super::pictures::PictureContext;
 use crate::base::fault::Say;
 use crate::draw::{Label, Scene as Drawing};
 use crate::lang::eval::context::Cx;
@@ -93,15 +94,15 @@ fn along(chain: &Chain) -> Vec<DVec3> {
 }
 
 /// Adds the names of what is drawn where they are wanted.
-pub(super) fn add(spec: &PictureSpec, things: &Things, stage: &Stage, drawing: &mut Drawing) {
-    let network = stage.network(spec, things);
+pub(super) fn add(spec: &PictureSpec, things: &Things, context: &PictureContext, drawing: &mut Drawing) {
+    let network = context.network(spec, things);
     let drawn = network.is_some() || !things.curves.is_empty() || !things.points.is_empty();
     if !spec.show.labels.unwrap_or(drawn) {
         return;
     }
     let mut labels = surfaces(drawing);
     if let Some(net) = network {
-        labels.extend(nodes(stage, net));
+        labels.extend(nodes(context, net));
         labels.extend((0..net.links.len()).map(LinkId::at).map(|link| {
             let rank = if net.curves[net.links[link.index()].curve.index()].links.len() == 1 { RANKS.2 } else { RANKS.3 };
             Label { text: of_link(net, link), places: along(&net.link_chain(link)), rank, centered: false }
@@ -115,7 +116,7 @@ pub(super) fn add(spec: &PictureSpec, things: &Things, stage: &Stage, drawing: &
         }));
     }
     for (name, at) in &things.points {
-        let name = if name.is_empty() { declared(stage, *at) } else { Some(name.clone()) };
+        let name = if name.is_empty() { declared(context, *at) } else { Some(name.clone()) };
         labels.extend(name.map(|text| Label { text, places: vec![*at], rank: RANKS.0, centered: false }));
     }
     labels.retain(|label| !label.text.is_empty());
@@ -132,9 +133,9 @@ pub(super) fn add(spec: &PictureSpec, things: &Things, stage: &Stage, drawing: &
 }
 
 /// The declared point at a place.
-fn declared(stage: &Stage, at: DVec3) -> Option<String> {
-    let near = |p: &&crate::lang::eval::pipeline::Declared<DVec3>| stage.tolerance.same_point(p.value, at);
-    stage.sound.parts.points.iter().find(near).map(|p| p.name.to_string())
+fn declared(context: &PictureContext, at: DVec3) -> Option<String> {
+    let near = |p: &&crate::lang::eval::pipeline::Declared<DVec3>| context.tolerance.same_point(p.value, at);
+    context.sound.parts.points.iter().find(near).map(|p| p.name.to_string())
 }
 
 /// Surfaces by name, at the middles of some of their triangles, those nearest to the middle of all first.
@@ -159,7 +160,7 @@ fn surfaces(drawing: &Drawing) -> Vec<Label> {
 }
 
 /// Nodes: the declared point there, else `a & b` for curves that meet, else the end of a curve.
-fn nodes(stage: &Stage, network: &Network) -> Vec<Label> {
+fn nodes(context: &PictureContext, network: &Network) -> Vec<Label> {
     let mut of_node: Vec<Vec<(usize, bool, bool)>> = vec![Vec::new(); network.nodes.len()];
     for (k, curve) in network.curves.iter().enumerate() {
         let last = curve.nodes.len() - 1;
@@ -172,7 +173,7 @@ fn nodes(stage: &Stage, network: &Network) -> Vec<Label> {
     }
     let name = |n: usize| {
         let curve = |k: usize| network.curves[k].name.as_str();
-        declared(stage, network.nodes[n].point).or_else(|| match of_node[n].as_slice() {
+        declared(context, network.nodes[n].point).or_else(|| match of_node[n].as_slice() {
             [(k, true, _)] => Some(format!("{}.start", curve(*k))),
             [(k, _, true)] => Some(format!("{}.end", curve(*k))),
             [(a, ..), (b, ..), ..] => Some(format!("{} & {}", curve(*a), curve(*b))),

@@ -1,6 +1,6 @@
 //! Results for continuous integration, in the XML that JUnit made common.
 
-use super::run::{CaseResult, Verdict};
+use super::verdict::{CaseResult, Verdict};
 use crate::base::xml::escaped;
 
 /// One suite with a case for each run, in their order; ends in a line break.

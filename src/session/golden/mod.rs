@@ -4,6 +4,7 @@
 //! into lines, `file` reads and writes the golden, `compare` matches lines, `tell` says in words what moved; `copies`
 //! compares exported files, meshes as geometry.
 
+mod accept;
 mod cells;
 mod compare;
 mod copies;
@@ -16,6 +17,8 @@ mod held;
 mod junit;
 mod line;
 mod looks;
+mod model_test;
+mod parse;
 mod quote;
 mod quotes;
 mod renames;
@@ -26,11 +29,13 @@ mod section;
 mod tell;
 mod tokens;
 mod values;
+mod verdict;
 mod words;
 
 pub use diff::{Difference, NoDiff, diff};
 pub use discover::{State, Test, discover};
 pub use file::{Flaw, Golden, Maker};
 pub use junit::text as junit_text;
-pub use run::{CaseResult, Settings, Verdict, name_of, names, run_all, run_one, run_one_again};
+pub use run::{Settings, name_of, names, run_all, run_one, run_one_again};
 pub use tell::Said;
+pub use verdict::{CaseResult, Verdict};

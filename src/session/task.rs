@@ -1,0 +1,82 @@
+//! What is to be run, and what became of it.
+
+use std::sync::Arc;
+
+use super::report::Report;
+use crate::base::fault::Severity;
+use crate::base::job::TooMuchWork;
+use crate::lang::declare::params::TableRow;
+use crate::lang::diag::diagnostic::{Diagnostic, Sources};
+use crate::lang::diag::render::render_all;
+use crate::lang::values::plans::PictureSpec;
+use crate::mesh::Mesh;
+
+/// What is to be run.
+pub struct Task<'a> {
+    /// The script as named on the command line.
+    pub name: &'a str,
+    /// Its bytes.
+    pub text: &'a [u8],
+    /// Params set from outside: name and the text of a literal.
+    pub sets: &'a [(String, String)],
+    /// The row of a table of variants that sets some of them.
+    pub row: Option<&'a TableRow>,
+    /// Warnings are errors.
+    pub strict: bool,
+    /// What is sound is written although something failed.
+    pub keep_going: bool,
+    /// Every number of the JSON report; without it the costly ones of meshes over 200 000 elements are left out.
+    pub full: bool,
+    /// One picture is all that is written, whatever the script exports, and also of a model that has errors.
+    pub picture: Option<&'a Wanted>,
+    /// Seconds since some moment.
+    pub clock: &'a (dyn Fn() -> f64 + Sync),
+}
+
+/// A picture asked for on the command line.
+#[derive(Clone, Debug)]
+pub struct Wanted {
+    /// Names of the script to draw; everything where there are none.
+    pub names: Vec<String>,
+    /// What to fill the picture with; everything drawn where there are none.
+    pub zoom: Vec<String>,
+    /// The rest of it, without things.
+    pub spec: PictureSpec,
+}
+
+/// What became of it.
+#[derive(Debug, Default)]
+pub struct Outcome {
+    /// All that was found out.
+    pub report: Report,
+    /// The meshes by name, in the order of the report.
+    pub meshes: Vec<(String, Arc<Mesh>)>,
+    /// Everything said about the script.
+    pub diagnostics: Vec<Diagnostic>,
+    /// The texts that diagnostics point into.
+    pub sources: Sources,
+    /// How things were found, a line each.
+    pub notes: Vec<String>,
+    /// Distance within which two points are one, model units.
+    pub tolerance: Option<f64>,
+    /// Stopped from outside.
+    pub interrupted: bool,
+    /// Ended for its work, where that is limited: what was found out is a part, and no property of the model.
+    pub over: Option<TooMuchWork>,
+    /// Something that cannot happen did.
+    pub bug: bool,
+    /// Declarations, stages and faces of meshes whose results were taken over from the run before.
+    pub reused: usize,
+    /// Of these the faces of meshes that are otherwise new.
+    pub reused_faces: usize,
+    /// Results that came from the folder of `--cache`.
+    pub from_cache: usize,
+}
+
+impl Outcome {
+    /// The diagnostics under their source lines; notes only when `verbose`.
+    pub fn drawn(&self, color: bool, verbose: bool) -> String {
+        let shown: Vec<Diagnostic> = self.diagnostics.iter().filter(|d| verbose || d.severity() != Severity::Note).cloned().collect();
+        if shown.is_empty() { String::new() } else { render_all(&shown, &self.sources, color) }
+    }
+}
