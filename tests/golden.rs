@@ -18,7 +18,7 @@ fn test(path: &Path, accept: bool, jobs: usize) -> Vec<CaseResult> {
 }
 
 fn said(result: &CaseResult) -> String {
-    let lines: Vec<String> = result.said.iter().map(|said| said.text(false)).collect();
+    let lines: Vec<String> = result.lines.iter().map(|said| said.text(false)).collect();
     format!("{}: {}\n{}\n", result.name, result.message, lines.join("\n"))
 }
 
@@ -392,7 +392,7 @@ fn the_page_of_the_code_is_true() {
     let folder = Folder::new("page", block("loft"), "");
     fs::write(folder.0.join("model.golden"), block("golden")).unwrap();
     let results = test(&folder.0, false, 1);
-    let lines: Vec<String> = results[0].said.iter().map(|s| s.text(false)).collect();
+    let lines: Vec<String> = results[0].lines.iter().map(|s| s.text(false)).collect();
     let text = format!("E902 × {}\n{}\n  help: {}\n", results[0].message, lines.join("\n"), results[0].help.as_deref().unwrap());
     assert_eq!(text.replace(&format!("{}/", folder.0.display()), ""), block("text"));
 }

@@ -59,7 +59,7 @@ impl Folder {
         let mut said = String::new();
         let cases = run_one_again(&discover(&[model]).unwrap()[0], &settings, &mut self.kept);
         for case in cases.iter().filter(|case| !case.verdict.is_good()) {
-            let lines: Vec<String> = case.said.iter().map(|said| said.text(false)).collect();
+            let lines: Vec<String> = case.lines.iter().map(|said| said.text(false)).collect();
             said.push_str(&format!("{}\n{}\n", case.message, lines.join("\n")));
         }
         said

@@ -34,7 +34,7 @@ impl Folder {
         let mut said = String::new();
         run_all(&tests, &settings, &mut |cases| {
             for case in cases.iter().filter(|case| !case.verdict.is_good()) {
-                let lines: Vec<String> = case.said.iter().map(|said| said.text(false)).collect();
+                let lines: Vec<String> = case.lines.iter().map(|said| said.text(false)).collect();
                 said.push_str(&format!("{}\n{}\n", case.message, lines.join("\n")));
             }
         });
@@ -49,7 +49,7 @@ impl Folder {
         let (old, new) = (self.0.join("model.loft"), self.0.join("other.loft"));
         fs::write(&new, script).unwrap();
         let found = diff(&old, &new, &|| 0.0, &Job::new()).unwrap();
-        found.iter().flat_map(|one| &one.said).map(|said| said.text(false) + "\n").collect()
+        found.iter().flat_map(|one| &one.lines).map(|said| said.text(false) + "\n").collect()
     }
 }
 

@@ -50,5 +50,5 @@ fn run(matches: &ArgMatches, terminal: &Terminal) -> Exit {
 
 fn shown(difference: &Difference, color: bool) -> String {
     let head = difference.case.as_ref().map_or("\n".to_owned(), |case| format!("\n[{case}]\n"));
-    difference.said.iter().fold(head, |text, said| text + &said.text(color) + "\n")
+    difference.lines.iter().fold(head, |text, line| text + &line.text(color) + "\n")
 }

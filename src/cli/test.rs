@@ -94,7 +94,7 @@ fn shown(case: &CaseResult, color: bool) -> String {
         return out;
     }
     out.push_str(&format!("{} {}\n", paint("31", "E902 ×"), case.message));
-    case.said.iter().for_each(|said| out.push_str(&format!("{}\n", said.text(color))));
+    case.lines.iter().for_each(|line| out.push_str(&format!("{}\n", line.text(color))));
     if let Some(help) = &case.help {
         out.push_str(&format!("  {} {help}\n", paint("36", "help:")));
     }

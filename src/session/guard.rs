@@ -1,4 +1,4 @@
-//! Work behind a wall: a deep stack for recursive scripts, and a bug in loft ends as a message, not as a crash.
+//! Guarded work: a deep stack for recursive scripts, and a bug in loft ends as a message, not as a crash.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};

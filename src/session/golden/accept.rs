@@ -1,7 +1,7 @@
 //! Writes a golden and its stored files anew.
 
 use super::copies;
-use super::file::{Entry, Golden, Run, Section};
+use super::file::{CaseParams, Entry, Golden, Section};
 use super::line::Line;
 use super::model_test::ModelTest;
 use super::verdict::{CaseResult, Verdict};
@@ -9,7 +9,7 @@ use crate::session::staging::Staging;
 
 impl ModelTest<'_> {
     /// Writes the golden and its stored files anew; what was not run stays as it is.
-    pub(super) fn accept(&self, runs: &[Run]) -> Vec<CaseResult> {
+    pub(super) fn accept(&self, runs: &[CaseParams]) -> Vec<CaseResult> {
         let mut results = Vec::new();
         let mut golden = Golden { head: self.golden.head.clone(), sections: Vec::new() };
         let (staging, mut changed) = (Staging::default(), false);
@@ -52,7 +52,7 @@ impl ModelTest<'_> {
         changed |= golden.text().as_bytes() != old.as_slice();
         if changed {
             if whole {
-                golden.head.sign();
+                golden.head.set_producer();
             }
             let text = golden.text();
             let named = |error: std::io::Error| std::io::Error::new(error.kind(), format!("{}: {error}", self.test.golden.display()));

@@ -12,7 +12,7 @@ use crate::session::report::Cell;
 
 /// One cell.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Entry {
+pub enum CellValue {
     /// A word, a text, `true`, or `-` for nothing.
     Text(String),
     /// A number, or a short list of them.
@@ -39,7 +39,7 @@ pub fn measure_of(unit: &str) -> Measure {
 /// Significant digits of numbers in lists inside lists.
 const INNER: usize = 17;
 
-impl Entry {
+impl CellValue {
     /// A cell of a column of this unit.
     pub fn of(cell: &Cell, unit: &str) -> Self {
         let numbers = |list: bool, all: Vec<f64>| Self::Numbers { list, all, unit: unit.to_owned() };
@@ -182,21 +182,21 @@ fn number_end(text: &str) -> usize {
 const TOGETHER: usize = 10;
 
 /// Many rows as one: of each column a digest of its words and of its numbers to ten digits, and the sum of the numbers, each
-/// times one that tells its row.
+/// times one for its row.
 pub fn together(rows: &[Vec<Cell>]) -> Vec<Cell> {
     let width = rows.iter().map(Vec::len).max().unwrap_or(0);
     let column = |c: usize| {
         let (mut sum, mut words) = (0.0, StableHasher::new("words"));
         let mut add = |weight: f64, cell: &Cell| {
-            let told = Entry::of(cell, "");
-            let mut tell = |place: usize, number: Option<f64>, piece: &str| {
+            let value = CellValue::of(cell, "");
+            let mut add_part = |place: usize, number: Option<f64>, piece: &str| {
                 sum += number.map_or(0.0, |x| weight * (1.0 + place as f64) * x);
                 let piece = number.map_or_else(|| piece.to_owned(), |x| rounded(x, TOGETHER));
                 words = std::mem::take(&mut words).text(&piece);
             };
-            match &told {
-                Entry::Numbers { all, .. } => all.iter().enumerate().for_each(|(k, x)| tell(k, Some(*x), "")),
-                Entry::Text(text) => pieces(text).into_iter().for_each(|piece| tell(0, real(piece), piece)),
+            match &value {
+                CellValue::Numbers { all, .. } => all.iter().enumerate().for_each(|(k, x)| add_part(k, Some(*x), "")),
+                CellValue::Text(text) => pieces(text).into_iter().for_each(|piece| add_part(0, real(piece), piece)),
             }
         };
         rows.iter().enumerate().for_each(|(k, row)| add(1.0 + k as f64 / rows.len() as f64, row.get(c).unwrap_or(&Cell::Missing)));
@@ -206,19 +206,19 @@ pub fn together(rows: &[Vec<Cell>]) -> Vec<Cell> {
 }
 
 /// A row as written.
-pub fn text(row: &[Entry], digits: usize) -> String {
+pub fn text(row: &[CellValue], digits: usize) -> String {
     row.iter().map(|entry| entry.text(digits)).collect::<Vec<_>>().join(" | ")
 }
 
 /// A row read; the error is what was expected instead.
-pub fn parse(text: &str) -> Result<Vec<Entry>, String> {
+pub fn parse(text: &str) -> Result<Vec<CellValue>, String> {
     let (mut row, mut rest) = (Vec::new(), text.trim());
     loop {
         let end = match rest.starts_with('"') {
             true => end_of_quote(rest).ok_or("cells between ` | `, texts in quotes closed")?,
             false => rest.find('|').unwrap_or(rest.len()),
         };
-        row.push(Entry::parse(rest[..end].trim())?);
+        row.push(CellValue::parse(rest[..end].trim())?);
         rest = rest[end..].trim_start();
         match rest.strip_prefix('|') {
             Some(more) => rest = more.trim_start(),
@@ -229,7 +229,7 @@ pub fn parse(text: &str) -> Result<Vec<Entry>, String> {
 }
 
 /// The largest change of a row in allowed ones; infinite where nothing is allowed.
-pub fn excess(old: &[Entry], new: &[Entry], apart: Apart<'_>) -> Option<f64> {
+pub fn excess(old: &[CellValue], new: &[CellValue], apart: Apart<'_>) -> Option<f64> {
     if old.len() != new.len() {
         return Some(f64::INFINITY);
     }
@@ -249,13 +249,13 @@ mod tests {
                 .map(|k| vec![Cell::Number(number(k)), Cell::List(vec![Cell::Number(number(k)), Cell::Text("a".to_owned())])])
                 .collect()
         };
-        let told = |rows: &[Vec<Cell>]| -> Vec<Entry> { together(rows).iter().map(|cell| Entry::of(cell, "")).collect() };
+        let summed = |rows: &[Vec<Cell>]| -> Vec<CellValue> { together(rows).iter().map(|cell| CellValue::of(cell, "")).collect() };
         let allowance = Allowance { tolerance: 1e-9, size: 10.0 };
-        let (whole, mut other) = (told(&rows(0, 0.0)), rows(0, 0.0));
-        assert_eq!(excess(&whole, &told(&rows(0, 0.0)), &|measure, x, y| allowance.excess(measure, x, y)), None);
-        assert!(excess(&whole, &told(&rows(3000, 0.005)), &|measure, x, y| allowance.excess(measure, x, y)).is_some());
+        let (whole, mut other) = (summed(&rows(0, 0.0)), rows(0, 0.0));
+        assert_eq!(excess(&whole, &summed(&rows(0, 0.0)), &|measure, x, y| allowance.excess(measure, x, y)), None);
+        assert!(excess(&whole, &summed(&rows(3000, 0.005)), &|measure, x, y| allowance.excess(measure, x, y)).is_some());
         other.swap(3000, 3001);
-        assert!(excess(&whole, &told(&other), &|measure, x, y| allowance.excess(measure, x, y)).is_some());
+        assert!(excess(&whole, &summed(&other), &|measure, x, y| allowance.excess(measure, x, y)).is_some());
     }
 
     #[test]
@@ -284,7 +284,7 @@ mod tests {
             ("((1, 2.5) | 3 mm)", "((1, 2.500000005) | 3 mm)", false),
             ("(7850.5 kg/m3 | \"v\")", "(7850.50001 kg/m3 | \"v\")", false),
         ] {
-            let quoted_text = |text: &str| vec![Entry::Text(text.to_owned())];
+            let quoted_text = |text: &str| vec![CellValue::Text(text.to_owned())];
             assert_eq!(
                 excess(&quoted_text(a), &quoted_text(b), &|measure, x, y| allowance.excess(measure, x, y)).is_none(),
                 same,

@@ -89,26 +89,26 @@ fn exceeding(change: f64, allowed: f64) -> Option<f64> {
 /// `names` are all that the script of the new lines uses: a name inside it that is found nowhere any more may have become
 /// another one.
 pub fn compare(old: &[Line], new: &[Line], names: &BTreeSet<String>, allowance: Allowance) -> Vec<Change> {
-    let mut pairing = Pairing { old, new, allowance, partner: vec![None; old.len()], taken: vec![false; new.len()] };
+    let mut pairing = Pairing { old, new, allowance, partner: vec![None; old.len()], matched: vec![false; new.len()] };
     let mut renames = Renames::between(old, new, names);
     let alone = || (String::new(), String::new());
-    let by_name = |line: &Line| if line.loose { alone() } else { (line.kind.clone(), line.name.clone()) };
-    let by_tokens = |line: &Line| if line.loose { (line.kind.clone(), tokens(&line.name).join(" ")) } else { alone() };
+    let by_name = |line: &Line| if line.unnamed { alone() } else { (line.kind.clone(), line.name.clone()) };
+    let by_tokens = |line: &Line| if line.unnamed { (line.kind.clone(), tokens(&line.name).join(" ")) } else { alone() };
     // What has no name is known by its values.
     pairing.by(&by_tokens, Only::Equal);
-    pairing.known_by_values(&mut |a, b| a.loose && b.loose && a.kind == b.kind && a.kind != "row" && same(a, b, allowance));
+    pairing.known_by_values(&mut |a, b| a.unnamed && b.unnamed && a.kind == b.kind && a.kind != "row" && same(a, b, allowance));
     pairing.by(&by_name, Only::Any);
     // What has another name now and is otherwise as it was.
     let renamed = pairing.known_by_values(&mut |a, b| {
         let fresh = !a.is_diagnostic() && a.kind == b.kind && same_but_name(a, b, allowance);
-        if fresh && !a.loose && !b.loose && !matches!(a.kind.as_str(), "set" | "settings" | "row") {
+        if fresh && !a.unnamed && !b.unnamed && !matches!(a.kind.as_str(), "set" | "settings" | "row") {
             renames.note(&a.name, &b.name);
         }
         fresh
     });
     pairing.known_by_values(&mut |a, b| a.is_diagnostic() && renames.same_diagnostic(a, b));
     pairing.by(&by_tokens, Only::Any);
-    pairing.by(&|line: &Line| if line.loose { (line.kind.clone(), String::new()) } else { alone() }, Only::Any);
+    pairing.by(&|line: &Line| if line.unnamed { (line.kind.clone(), String::new()) } else { alone() }, Only::Any);
     // A diagnostic whose words changed is found again by what it points at.
     let by_place = |line: &Line| match line.get("at") {
         Some(Value::Word(at)) if line.is_diagnostic() => (line.kind.clone(), tokens(at).join(" ")),
@@ -116,7 +116,7 @@ pub fn compare(old: &[Line], new: &[Line], names: &BTreeSet<String>, allowance: 
         _ => alone(),
     };
     pairing.by(&by_place, Only::Any);
-    let (partner, taken) = (pairing.partner, pairing.taken);
+    let (partner, matched) = (pairing.partner, pairing.matched);
     let mut changes = Vec::new();
     for (k, line) in old.iter().enumerate() {
         let Some(other) = partner[k].map(|b| &new[b]) else {
@@ -125,7 +125,7 @@ pub fn compare(old: &[Line], new: &[Line], names: &BTreeSet<String>, allowance: 
         };
         let today = renames.of_today(line);
         if renamed.contains(&k) {
-            if today.name != other.name || line.loose != other.loose {
+            if today.name != other.name || line.unnamed != other.unnamed {
                 changes.push(Change::Renamed { old: line.clone(), new: other.clone() });
             }
             continue;
@@ -141,7 +141,7 @@ pub fn compare(old: &[Line], new: &[Line], names: &BTreeSet<String>, allowance: 
             changes.push(Change::Changed { old: line.clone(), new: other.clone(), moves });
         }
     }
-    changes.extend(new.iter().zip(taken).filter(|(_, taken)| !taken).map(|(line, _)| Change::New(line.clone())));
+    changes.extend(new.iter().zip(matched).filter(|(_, matched)| !matched).map(|(line, _)| Change::New(line.clone())));
     changes
 }
 
@@ -162,13 +162,13 @@ struct Pairing<'l> {
     new: &'l [Line],
     allowance: Allowance,
     partner: Vec<Option<usize>>,
-    taken: Vec<bool>,
+    matched: Vec<bool>,
 }
 
 impl Pairing<'_> {
     fn marry(&mut self, a: usize, b: usize) {
         self.partner[a] = Some(b);
-        self.taken[b] = true;
+        self.matched[b] = true;
     }
 
     /// Pairs lines with the same key. Lines with an empty key stay alone.
@@ -198,7 +198,7 @@ impl Pairing<'_> {
     fn known_by_values(&mut self, same: &mut dyn FnMut(&Line, &Line) -> bool) -> BTreeSet<usize> {
         let mut found = BTreeSet::new();
         for a in self.free_old() {
-            let b = (0..self.new.len()).find(|b| !self.taken[*b] && same(&self.old[a], &self.new[*b]));
+            let b = (0..self.new.len()).find(|b| !self.matched[*b] && same(&self.old[a], &self.new[*b]));
             if let Some(b) = b {
                 self.marry(a, b);
                 found.insert(a);
@@ -212,13 +212,13 @@ impl Pairing<'_> {
     }
 
     fn free_new(&self) -> Vec<usize> {
-        (0..self.new.len()).filter(|k| !self.taken[*k]).collect()
+        (0..self.new.len()).filter(|k| !self.matched[*k]).collect()
     }
 }
 
 /// Whether a line stands for what a script says without a label: equal values do not make two of them one.
 fn is_worded(line: &Line) -> bool {
-    line.loose && matches!(line.kind.as_str(), "check" | "report")
+    line.unnamed && matches!(line.kind.as_str(), "check" | "report")
 }
 
 /// The move from the words of one line to those of another.
@@ -236,7 +236,7 @@ pub fn one_thing(one: &Line, other: &Line, size: f64) -> bool {
 
 /// Whether two lines of one kind say the same, names included where they have one.
 fn same(old: &Line, new: &Line, allowance: Allowance) -> bool {
-    (old.loose && new.loose || old.name == new.name) && same_but_name(old, new, allowance)
+    (old.unnamed && new.unnamed || old.name == new.name) && same_but_name(old, new, allowance)
 }
 
 /// Whether two lines of one kind say the same, whatever their names; names of groups included.
@@ -251,7 +251,7 @@ fn same_but_name(old: &Line, new: &Line, allowance: Allowance) -> bool {
 /// What differs between two lines of one kind.
 fn moves(old: &Line, new: &Line, allowance: Allowance) -> Vec<Move> {
     let mut found = Vec::new();
-    if old.name != new.name && !(old.loose && new.loose) {
+    if old.name != new.name && !(old.unnamed && new.unnamed) {
         found.push(worded(old, new));
     }
     for field in words::fields_of(&old.kind) {

@@ -17,7 +17,7 @@ use crate::session::staging::Staging;
 
 /// The files that a run wrote.
 #[derive(Clone, Debug)]
-pub struct Written {
+pub struct CaseFiles {
     /// Where they are.
     pub folder: PathBuf,
     /// Their paths inside it.
@@ -34,7 +34,7 @@ pub struct FileChange {
 }
 
 /// Compares what was written with the stored copies; what is as it was is left out.
-pub fn compare(stored: &Path, written: &Written, compares: &[Compare]) -> Vec<FileChange> {
+pub fn compare(stored: &Path, written: &CaseFiles, compares: &[Compare]) -> Vec<FileChange> {
     let one = |c: &Compare| {
         let old = match read_limited(&stored.join(&c.file), limits::DATA_BYTES) {
             Ok(bytes) => bytes,
@@ -54,7 +54,7 @@ pub fn compare(stored: &Path, written: &Written, compares: &[Compare]) -> Vec<Fi
 }
 
 /// A file that was written, and the unit of its lengths; the error is a sentence.
-fn read(written: &Written, c: &Compare) -> Result<(Vec<u8>, &'static str), String> {
+fn read(written: &CaseFiles, c: &Compare) -> Result<(Vec<u8>, &'static str), String> {
     let Some(row) = written.outputs.iter().find(|row| Path::new(&row.path) == Path::new(&c.file)) else {
         let names: Vec<&str> = written.outputs.iter().map(|row| row.path.as_str()).collect();
         return Err(match names.as_slice() {
@@ -99,7 +99,7 @@ fn bytes(old: &[u8], new: &[u8]) -> String {
 }
 
 /// Stages new stored copies; whether any differs from the one that is there. The error is a sentence.
-pub fn store(stored: &Path, written: &Written, compares: &[Compare], staging: &Staging) -> Result<bool, String> {
+pub fn store(stored: &Path, written: &CaseFiles, compares: &[Compare], staging: &Staging) -> Result<bool, String> {
     let mut changed = false;
     for c in compares {
         let (bytes, _) = read(written, c).map_err(|text| format!("cannot store {:?}: {text}", c.file))?;

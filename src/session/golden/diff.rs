@@ -5,12 +5,12 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::compare::{Allowance, compare};
+use super::describe::{self, DiffLine};
+use super::details::{self, Details};
 use super::file::{Golden, TOLERANCE};
 use super::geometry::{self, Shape};
 use super::line::Line;
-use super::looks::{self, Looks};
 use super::section;
-use super::tell::{self, Said};
 use super::values::Value;
 use crate::base::job::Job;
 use crate::base::limits;
@@ -22,14 +22,14 @@ use crate::session::run::{self, Task};
 /// One of the two things compared.
 #[derive(Debug, Default)]
 struct Side {
-    runs: Vec<Ran>,
+    cases: Vec<ComparedCase>,
     tolerance: f64,
 }
 
-/// A run with what it found.
+/// A case with its lines.
 #[derive(Debug, Default)]
-struct Ran {
-    case: Option<String>,
+struct ComparedCase {
+    name: Option<String>,
     lines: Vec<Line>,
     /// Names that the script uses; none of a golden.
     names: BTreeSet<String>,
@@ -45,7 +45,7 @@ pub struct Difference {
     /// The case; `None` for models as written.
     pub case: Option<String>,
     /// What differs.
-    pub said: Vec<Said>,
+    pub lines: Vec<DiffLine>,
 }
 
 /// Why nothing was compared.
@@ -66,38 +66,38 @@ pub fn diff(old: &Path, new: &Path, clock: &(dyn Fn() -> f64 + Sync), job: &Job)
     let (a, b) = (side(old, clock, job)?, side(new, clock, job)?);
     let tolerance = if a.tolerance > 0.0 || old.extension().is_some_and(|e| e == "golden") { a.tolerance } else { b.tolerance };
     let mut found = Vec::new();
-    let words = |text: &str| vec![Said::Words(text.to_owned())];
-    for ran in &a.runs {
-        let said = match b.runs.iter().find(|other| other.case == ran.case) {
-            Some(other) => between(ran, other, tolerance),
+    let words = |text: &str| vec![DiffLine::Words(text.to_owned())];
+    for case in &a.cases {
+        let lines = match b.cases.iter().find(|other| other.name == case.name) {
+            Some(other) => between(case, other, tolerance),
             None => words("this case is gone"),
         };
-        found.push(Difference { case: ran.case.clone(), said });
+        found.push(Difference { case: case.name.clone(), lines });
     }
-    for ran in b.runs.iter().filter(|ran| !a.runs.iter().any(|other| other.case == ran.case)) {
-        found.push(Difference { case: ran.case.clone(), said: words("this case is new") });
+    for case in b.cases.iter().filter(|case| !a.cases.iter().any(|other| other.name == case.name)) {
+        found.push(Difference { case: case.name.clone(), lines: words("this case is new") });
     }
-    found.retain(|difference| !difference.said.is_empty());
+    found.retain(|difference| !difference.lines.is_empty());
     Ok(found)
 }
 
-fn between(old: &Ran, new: &Ran, tolerance: f64) -> Vec<Said> {
+fn between(old: &ComparedCase, new: &ComparedCase, tolerance: f64) -> Vec<DiffLine> {
     let size = if new.size > 0.0 { new.size } else { old.size };
     let allowance = Allowance { tolerance, size };
-    let mut said = tell::changes(&compare(&old.lines, &new.lines, &new.names, allowance), allowance);
+    let mut lines = describe::changes(&compare(&old.lines, &new.lines, &new.names, allowance), allowance);
     if old.units == new.units {
         for (name, mesh) in &new.meshes {
             let Some((_, before)) = old.meshes.iter().find(|(other, _)| other == name) else { continue };
             let moved = geometry::differs(&Shape::from_mesh(before), &Shape::from_mesh(mesh), tolerance * size, &new.units);
-            said.extend(moved.map(|text| Said::Words(format!("mesh {}: {text}", super::quotes::label(name)))));
+            lines.extend(moved.map(|text| DiffLine::Words(format!("mesh {}: {text}", super::quotes::label(name)))));
         }
     }
-    said
+    lines
 }
 
 fn side(path: &Path, clock: &(dyn Fn() -> f64 + Sync), job: &Job) -> Result<Side, NoDiff> {
     let unreadable = |what: String| NoDiff::Unreadable(format!("{}: {what}", path.display()));
-    let bytes = read_limited(path, limits::SOURCE_BYTES + 1).map_err(|error| unreadable(super::run::said(&error)))?;
+    let bytes = read_limited(path, limits::SOURCE_BYTES + 1).map_err(|error| unreadable(super::run::why_unreadable(&error)))?;
     match path.extension().and_then(|e| e.to_str()) {
         Some("golden") => golden(&bytes).map_err(|text| NoDiff::Unreadable(format!("{}:{text}", path.display()))),
         Some("loft") => model(path, &bytes, clock, job),
@@ -112,15 +112,15 @@ fn golden(bytes: &[u8]) -> Result<Side, String> {
         return Err(format!("{}: {}", flaw.line, flaw.what));
     }
     let tolerance = golden.head.tolerance();
-    let ran = |section: super::file::Section| {
+    let case = |section: super::file::Section| {
         let lines: Vec<Line> = section.entries.into_iter().map(|entry| entry.line).collect();
-        Ran { case: section.case, size: size_of(&lines), lines, ..Ran::default() }
+        ComparedCase { name: section.case, size: size_of(&lines), lines, ..ComparedCase::default() }
     };
-    let mut runs: Vec<Ran> = golden.sections.into_iter().map(ran).collect();
-    if runs.is_empty() {
-        runs.push(Ran::default());
+    let mut cases: Vec<ComparedCase> = golden.sections.into_iter().map(case).collect();
+    if cases.is_empty() {
+        cases.push(ComparedCase::default());
     }
-    Ok(Side { runs, tolerance })
+    Ok(Side { cases, tolerance })
 }
 
 /// The diagonal of all boxes that stand in a golden; without any, its longest curve.
@@ -142,16 +142,22 @@ fn model(path: &Path, text: &[u8], clock: &(dyn Fn() -> f64 + Sync), job: &Job) 
     let disk = disk.map_err(|error| NoDiff::Unreadable(format!("{}: {error}", path.display())))?.seen_from_home();
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let task = Task { name: &name, text, sets: &[], row: None, strict: false, keep_going: false, full: true, picture: None, clock };
-    let mut seen = Looks::default();
-    let outcome = guarded(|| run::run_seen(&task, &disk, job, &mut |cx| seen = looks::of(cx))).map_err(NoDiff::Bug)?;
+    let mut details = Details::default();
+    let outcome = guarded(|| run::run_seen(&task, &disk, job, &mut |cx| details = details::of(cx))).map_err(NoDiff::Bug)?;
     if outcome.interrupted {
         return Err(NoDiff::Interrupted);
     }
     if let Some(over) = outcome.over {
         return Err(NoDiff::Unreadable(format!("{}: {over}", path.display())));
     }
-    let found = section::of(&outcome, seen, "");
-    let ran =
-        Ran { case: None, lines: found.lines, names: found.names, size: found.size, units: outcome.report.units, meshes: outcome.meshes };
-    Ok(Side { runs: vec![ran], tolerance: TOLERANCE })
+    let found = section::of(&outcome, details, "");
+    let case = ComparedCase {
+        name: None,
+        lines: found.lines,
+        names: found.names,
+        size: found.size,
+        units: outcome.report.units,
+        meshes: outcome.meshes,
+    };
+    Ok(Side { cases: vec![case], tolerance: TOLERANCE })
 }

@@ -46,18 +46,18 @@ pub struct Case {
 }
 
 /// A case and the params it sets; `None` is the model as written.
-pub type Run = (Option<String>, Vec<(String, String)>);
+pub type CaseParams = (Option<String>, Vec<(String, String)>);
 
 /// Which program wrote the body.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Maker {
+pub struct Producer {
     /// Version of loft.
     pub loft: String,
     /// Version of its mesher.
     pub mesher: u32,
 }
 
-impl Maker {
+impl Producer {
     /// This program.
     pub fn this() -> Self {
         Self { loft: env!("CARGO_PKG_VERSION").to_owned(), mesher: crate::mesh::VERSION }
@@ -77,7 +77,7 @@ pub struct Head {
     /// Index of `made by` among them.
     pub(super) made_at: Option<usize>,
     /// Who wrote the body.
-    pub made_by: Option<Maker>,
+    pub made_by: Option<Producer>,
     /// Relative tolerance of reals; 0 is exact.
     pub tolerance: Option<f64>,
     /// Files to compare.
@@ -126,7 +126,7 @@ impl Head {
     }
 
     /// The runs: a name and the params set.
-    pub fn runs(&self) -> Vec<Run> {
+    pub fn runs(&self) -> Vec<CaseParams> {
         if self.cases.is_empty() {
             return vec![(None, Vec::new())];
         }
@@ -135,14 +135,14 @@ impl Head {
 
     /// The head of a golden made from nothing.
     pub fn fresh() -> Self {
-        let raw = vec![format!("loft golden {VERSION}"), format!("made by {}", Maker::this().text()), "tolerance 1e-9".to_owned()];
-        Self { raw, made_at: Some(1), made_by: Some(Maker::this()), tolerance: Some(TOLERANCE), ..Self::default() }
+        let raw = vec![format!("loft golden {VERSION}"), format!("made by {}", Producer::this().text()), "tolerance 1e-9".to_owned()];
+        Self { raw, made_at: Some(1), made_by: Some(Producer::this()), tolerance: Some(TOLERANCE), ..Self::default() }
     }
 
     /// Says that this program wrote the body.
-    pub fn sign(&mut self) {
-        let text = format!("made by {}", Maker::this().text());
-        self.made_by = Some(Maker::this());
+    pub fn set_producer(&mut self) {
+        let text = format!("made by {}", Producer::this().text());
+        self.made_by = Some(Producer::this());
         match self.made_at {
             Some(at) => {
                 let comment = comment_at(&self.raw[at]).map(|c| self.raw[at][c..].to_owned());

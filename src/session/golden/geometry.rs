@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 
-use super::tell::tolerances;
+use super::describe::tolerances;
 use super::values::rounded;
 use crate::base::bbox::Box3;
 use crate::base::boxtree::BoxTree;
@@ -23,12 +23,12 @@ pub struct Shape {
     /// Different places.
     pub nodes: Vec<DVec3>,
     /// Faces and lines.
-    pub cells: Vec<Cell>,
+    pub elements: Vec<Element>,
 }
 
 /// A face, or an open run of edges.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Cell {
+pub struct Element {
     /// Name of its group; empty without one.
     pub group: String,
     /// Whether the last node is joined to the first.
@@ -55,9 +55,9 @@ impl Places {
         })
     }
 
-    fn cell(&mut self, group: &str, closed: bool, points: impl IntoIterator<Item = DVec3>) {
+    fn element(&mut self, group: &str, closed: bool, points: impl IntoIterator<Item = DVec3>) {
         let nodes = points.into_iter().map(|p| self.node(p)).collect();
-        self.shape.cells.push(Cell { group: group.to_owned(), closed, nodes });
+        self.shape.elements.push(Element { group: group.to_owned(), closed, nodes });
     }
 }
 
@@ -71,10 +71,10 @@ impl Shape {
         });
         for group in &obj.groups {
             for k in &group.polygons {
-                places.cell(&group.name, true, obj.polygons[*k].iter().map(|n| obj.vertices[*n as usize]));
+                places.element(&group.name, true, obj.polygons[*k].iter().map(|n| obj.vertices[*n as usize]));
             }
             for k in &group.polylines {
-                places.cell(&group.name, false, obj.polylines[*k].iter().copied());
+                places.element(&group.name, false, obj.polylines[*k].iter().copied());
             }
         }
         Ok(places.shape)
@@ -91,10 +91,10 @@ impl Shape {
         let at = |n: &u32| mesh.nodes[*n as usize];
         for face in &mesh.faces {
             for k in face.triangles.clone() {
-                places.cell(&face.name, true, mesh.triangles[k as usize].iter().map(at));
+                places.element(&face.name, true, mesh.triangles[k as usize].iter().map(at));
             }
             for k in face.quads.clone() {
-                places.cell(&face.name, true, mesh.quads[k as usize].iter().map(at));
+                places.element(&face.name, true, mesh.quads[k as usize].iter().map(at));
             }
         }
         places.shape
@@ -102,24 +102,24 @@ impl Shape {
 
     /// A mesh as it is: elements of all kinds, its nodes with their own numbers. Groups are compared elsewhere.
     pub fn from_mesh(mesh: &Mesh) -> Self {
-        let cell = |closed: bool, nodes: &[u32]| Cell { group: String::new(), closed, nodes: nodes.to_vec() };
-        let lines = mesh.lines.iter().map(|n| cell(false, n));
-        let faces = mesh.triangles.iter().map(|n| cell(true, n)).chain(mesh.quads.iter().map(|n| cell(true, n)));
-        Self { nodes: mesh.nodes.clone(), cells: lines.chain(faces).collect() }
+        let element = |closed: bool, nodes: &[u32]| Element { group: String::new(), closed, nodes: nodes.to_vec() };
+        let lines = mesh.lines.iter().map(|n| element(false, n));
+        let faces = mesh.triangles.iter().map(|n| element(true, n)).chain(mesh.quads.iter().map(|n| element(true, n)));
+        Self { nodes: mesh.nodes.clone(), elements: lines.chain(faces).collect() }
     }
 
-    /// Triangles that fill the cells; an edge is a triangle without width.
+    /// Triangles that fill the elements; an edge is a triangle without width.
     fn triangles(&self) -> Vec<[DVec3; 3]> {
         let at = |n: u32| self.nodes[n as usize];
-        let fan = |cell: &Cell| -> Vec<[DVec3; 3]> {
-            let n = &cell.nodes;
-            match (cell.closed && n.len() > 2, n.as_slice()) {
+        let fan = |element: &Element| -> Vec<[DVec3; 3]> {
+            let n = &element.nodes;
+            match (element.closed && n.len() > 2, n.as_slice()) {
                 (true, _) => (1..n.len() - 1).map(|k| [at(n[0]), at(n[k]), at(n[k + 1])]).collect(),
                 (false, [one]) => vec![[at(*one); 3]],
                 (false, _) => n.windows(2).map(|w| [at(w[0]), at(w[1]), at(w[1])]).collect(),
             }
         };
-        self.cells.iter().flat_map(fan).collect()
+        self.elements.iter().flat_map(fan).collect()
     }
 }
 
@@ -129,14 +129,14 @@ pub fn differs(old: &Shape, new: &Shape, within: f64, unit: &str) -> Option<Stri
     if lonely_old.is_empty() && lonely_new.is_empty() {
         return cells_differ(old, new, &partner, unit);
     }
-    if old.nodes.len() == new.nodes.len() && old.cells == new.cells {
+    if old.nodes.len() == new.nodes.len() && old.elements == new.elements {
         // The same numbers: each node is known.
         let moved = old.nodes.iter().zip(&new.nodes).map(|(a, b)| (a.distance(*b), *b));
         return said_moved(&moved.filter(|m| m.0 > within).collect::<Vec<_>>(), within, unit);
     }
     let gone: Vec<DVec3> = lonely_old.iter().map(|n| old.nodes[*n]).collect();
     let come: Vec<DVec3> = lonely_new.iter().map(|n| new.nodes[*n]).collect();
-    if gone.len() == come.len() && old.nodes.len() == new.nodes.len() && old.cells.len() == new.cells.len() {
+    if gone.len() == come.len() && old.nodes.len() == new.nodes.len() && old.elements.len() == new.elements.len() {
         let points: Vec<[DVec3; 3]> = gone.iter().map(|p| [*p; 3]).collect();
         let near = Near::new(&points);
         let moved: Vec<(f64, DVec3)> = come.iter().map(|p| (near.distance(*p, within), *p)).collect();
@@ -161,7 +161,7 @@ fn said_apart(old: &Shape, new: &Shape, gone: &[DVec3], come: &[DVec3], within: 
     };
     let both = [farthest(gone, new), farthest(come, old)];
     let counts = |what: &str, a: usize, b: usize| if a == b { format!("{a} {what}") } else { format!("{a} → {b} {what}") };
-    let (n, c) = (counts("nodes", old.nodes.len(), new.nodes.len()), counts("elements", old.cells.len(), new.cells.len()));
+    let (n, c) = (counts("nodes", old.nodes.len(), new.nodes.len()), counts("elements", old.elements.len(), new.elements.len()));
     let far = both.into_iter().flatten().reduce(|most, other| if other.0 > most.0 { other } else { most });
     let far = match far {
         Some((d, _)) if d.is_infinite() => "one of the two is empty".to_owned(),
@@ -202,50 +202,50 @@ fn matched(old: &Shape, new: &Shape, within: f64) -> Matched {
     }
     pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
     let mut partner = vec![u32::MAX; old.nodes.len()];
-    let mut taken = vec![false; new.nodes.len()];
+    let mut matched = vec![false; new.nodes.len()];
     for (_, k, m) in pairs {
-        if partner[k] == u32::MAX && !taken[m] {
+        if partner[k] == u32::MAX && !matched[m] {
             partner[k] = m as u32;
-            taken[m] = true;
+            matched[m] = true;
         }
     }
     let lonely_old = (0..partner.len()).filter(|k| partner[*k] == u32::MAX).collect();
-    let lonely_new = (0..taken.len()).filter(|m| !taken[*m]).collect();
+    let lonely_new = (0..matched.len()).filter(|m| !matched[*m]).collect();
     Matched { partner, lonely_old, lonely_new }
 }
 
-/// A cell that begins at its smallest number; an open one at its smaller end.
-fn canonical(cell: &Cell, number: impl Fn(u32) -> u32) -> Cell {
-    let mut nodes: Vec<u32> = cell.nodes.iter().map(|n| number(*n)).collect();
-    if cell.closed {
+/// A element that begins at its smallest number; an open one at its smaller end.
+fn canonical(element: &Element, number: impl Fn(u32) -> u32) -> Element {
+    let mut nodes: Vec<u32> = element.nodes.iter().map(|n| number(*n)).collect();
+    if element.closed {
         let first = (0..nodes.len()).min_by_key(|k| nodes[*k]).unwrap_or(0);
         nodes.rotate_left(first);
     } else if nodes.last() < nodes.first() {
         nodes.reverse();
     }
-    Cell { nodes, ..cell.clone() }
+    Element { nodes, ..element.clone() }
 }
 
-/// What differs between cells on the same nodes.
+/// What differs between elements on the same nodes.
 fn cells_differ(old: &Shape, new: &Shape, partner: &[u32], unit: &str) -> Option<String> {
-    let mut before: Vec<Cell> = job::looking(&old.cells).map(|c| canonical(c, |n| partner[n as usize])).collect();
-    let mut after: Vec<Cell> = job::looking(&new.cells).map(|c| canonical(c, |n| n)).collect();
+    let mut before: Vec<Element> = job::looking(&old.elements).map(|c| canonical(c, |n| partner[n as usize])).collect();
+    let mut after: Vec<Element> = job::looking(&new.elements).map(|c| canonical(c, |n| n)).collect();
     before.sort();
     after.sort();
     let (gone, come) = (without(&before, &after), without(&after, &before));
     let first = come.first().or(gone.first())?;
     let centre = first.nodes.iter().map(|n| new.nodes[*n as usize]).sum::<DVec3>() / first.nodes.len().max(1) as f64;
-    let bare = |cells: &[Cell], turned: bool| {
-        let strip = |c: &Cell| {
+    let bare = |elements: &[Element], turned: bool| {
+        let strip = |c: &Element| {
             let mut nodes = c.nodes.clone();
             if turned {
                 nodes.reverse();
             }
-            canonical(&Cell { group: String::new(), closed: c.closed, nodes }, |n| n)
+            canonical(&Element { group: String::new(), closed: c.closed, nodes }, |n| n)
         };
-        let mut cells: Vec<Cell> = cells.iter().map(strip).collect();
-        cells.sort();
-        cells
+        let mut elements: Vec<Element> = elements.iter().map(strip).collect();
+        elements.sort();
+        elements
     };
     let what = if bare(&gone, false) == bare(&come, false) {
         let from = gone.iter().find(|c| c.nodes == first.nodes).map_or("", |c| c.group.as_str());
@@ -259,13 +259,13 @@ fn cells_differ(old: &Shape, new: &Shape, partner: &[u32], unit: &str) -> Option
 }
 
 /// Items of a sorted list that the other sorted list has not, repeated ones counted.
-fn without(these: &[Cell], those: &[Cell]) -> Vec<Cell> {
+fn without(these: &[Element], those: &[Element]) -> Vec<Element> {
     let mut rest = those.iter().peekable();
     let mut found = Vec::new();
-    for cell in these {
-        while rest.next_if(|other| *other < cell).is_some() {}
-        if rest.next_if(|other| *other == cell).is_none() {
-            found.push(cell.clone());
+    for element in these {
+        while rest.next_if(|other| *other < element).is_some() {}
+        if rest.next_if(|other| *other == element).is_none() {
+            found.push(element.clone());
         }
     }
     found

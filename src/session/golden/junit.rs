@@ -31,16 +31,16 @@ fn case(result: &CaseResult, out: &mut String) {
         return;
     }
     let tag = if is_error(result.verdict) { "error" } else { "failure" };
-    let said: String = result.said.iter().map(|said| format!("{}\n", said.text(false))).collect();
+    let lines: String = result.lines.iter().map(|line| format!("{}\n", line.text(false))).collect();
     let help = result.help.as_ref().map_or(String::new(), |help| format!("  help: {help}\n"));
     let (kind, message) = (result.verdict.word(), escaped(&result.message));
-    out.push_str(&format!(">\n      <{tag} type=\"{kind}\" message=\"{message}\">{}</{tag}>\n", escaped(&format!("{said}{help}"))));
+    out.push_str(&format!(">\n      <{tag} type=\"{kind}\" message=\"{message}\">{}</{tag}>\n", escaped(&format!("{lines}{help}"))));
     out.push_str("    </testcase>\n");
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::tell::Said;
+    use super::super::describe::DiffLine;
     use super::*;
 
     #[test]
@@ -49,7 +49,7 @@ mod tests {
             name: name.to_owned(),
             verdict,
             message: "\"a\" < b & \u{1b}[31mc".to_owned(),
-            said: vec![Said::Old("mesh <m>".to_owned())],
+            lines: vec![DiffLine::Old("mesh <m>".to_owned())],
             help: None,
             seconds: 0.25,
         };

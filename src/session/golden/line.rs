@@ -12,7 +12,7 @@ pub struct Line {
     /// What it speaks of; of a diagnostic the message; empty where there is nothing to name.
     pub name: String,
     /// It has no name: what stands there is how the script says it, and it is known by its values.
-    pub loose: bool,
+    pub unnamed: bool,
     /// Words and values in the order of the table.
     pub pairs: Vec<(&'static str, Value)>,
 }
@@ -43,7 +43,7 @@ impl Line {
             out.push_str(&self.name);
         } else if kind_of(&self.kind).is_some_and(|kind| kind.named) {
             let name = match self.kind.as_str() {
-                _ if self.loose => format!("`{}`", self.name.replace('`', "'")),
+                _ if self.unnamed => format!("`{}`", self.name.replace('`', "'")),
                 "check" => quoted(&self.name),
                 _ => label(&self.name),
             };
@@ -67,7 +67,7 @@ pub fn parse_line(content: &str) -> Result<Line, String> {
     let (kind, name) = head.split_once(char::is_whitespace).map_or((head, ""), |(kind, name)| (kind, name.trim()));
     let mut line = Line { kind: kind.to_owned(), ..Line::default() };
     line.name = name_of(kind, name)?;
-    line.loose = !line.is_diagnostic() && name.starts_with('`');
+    line.unnamed = !line.is_diagnostic() && name.starts_with('`');
     for part in fields {
         let (field, value) = pair(kind, part)?;
         if line.get(field.word).is_some() {

@@ -5,14 +5,14 @@ use std::path::{Path, PathBuf};
 
 use super::compare::{Allowance, Change, compare};
 use super::copies;
+use super::describe::{self, DiffLine};
+use super::details::{self, Details};
 use super::discover::Test;
-use super::file::{Golden, Maker, Run, Section};
+use super::file::{CaseParams, Golden, Producer, Section};
 use super::line::Line;
-use super::looks::{self, Looks};
 use super::run::{Settings, name_of};
 use super::scratch::Scratch;
-use super::section::{self, Found};
-use super::tell::{self, Said};
+use super::section::{self, CaseLines};
 use super::verdict::{CaseResult, Verdict};
 use crate::lang::eval::context::Cx;
 use crate::session::disk::{Disk, Outputs};
@@ -33,8 +33,8 @@ pub(super) struct ModelTest<'a> {
 
 /// One run: what it found and where its files are.
 pub(super) struct CaseRun {
-    pub(super) found: Found,
-    pub(super) files: copies::Written,
+    pub(super) found: CaseLines,
+    pub(super) files: copies::CaseFiles,
 }
 
 impl ModelTest<'_> {
@@ -66,8 +66,8 @@ impl ModelTest<'_> {
             picture: None,
             clock: self.settings.clock,
         };
-        let mut seen = Looks::default();
-        let look = &mut |cx: &mut Cx<'_>| seen = looks::of(cx);
+        let mut details = Details::default();
+        let look = &mut |cx: &mut Cx<'_>| details = details::of(cx);
         // A bug may leave half of something: then the next case starts from nothing.
         let mut kept = self.kept.take();
         let again = || run::run_again(&task, &disk, self.settings.job, Again { kept: &mut kept, light: false, look });
@@ -86,11 +86,11 @@ impl ModelTest<'_> {
             return Err(CaseResult::new(&name, Verdict::Bug, bug.message.clone()).help("please report it with the script and this text"));
         }
         let hide = format!("{}{}", out.display(), std::path::MAIN_SEPARATOR);
-        let found = section::of(&outcome, seen, &hide);
-        Ok(CaseRun { found, files: copies::Written { folder: out, outputs: outcome.report.outputs } })
+        let found = section::of(&outcome, details, &hide);
+        Ok(CaseRun { found, files: copies::CaseFiles { folder: out, outputs: outcome.report.outputs } })
     }
 
-    pub(super) fn compare_all(&self, runs: &[Run]) -> Vec<CaseResult> {
+    pub(super) fn compare_all(&self, runs: &[CaseParams]) -> Vec<CaseResult> {
         let mut results = Vec::new();
         for (case, sets) in runs {
             let start = (self.settings.clock)();
@@ -127,13 +127,13 @@ impl ModelTest<'_> {
         if changes.is_empty() && files.is_empty() {
             return CaseResult::new(name, Verdict::Passed, "");
         }
-        let mut said = self.other_maker();
-        said.extend(tell::changes(&changes, allowance));
-        said.extend(files.iter().map(|file| Said::Words(file.text.clone())));
+        let mut lines = self.other_producer();
+        lines.extend(describe::changes(&changes, allowance));
+        lines.extend(files.iter().map(|file| DiffLine::Words(file.text.clone())));
         let missing = changes.is_empty() && files.iter().all(|file| file.missing);
         let verdict = if missing { Verdict::Missing } else { Verdict::Differs };
         let message = format!("{name} differs from its golden{}", counted(&changes, files.len()));
-        CaseResult { said, ..CaseResult::new(name, verdict, message).help(format!("if this is as it should be: {accept}")) }
+        CaseResult { lines, ..CaseResult::new(name, verdict, message).help(format!("if this is as it should be: {accept}")) }
     }
 
     /// A golden without any line is one of a model that finds nothing: an empty script.
@@ -143,12 +143,12 @@ impl ModelTest<'_> {
     }
 
     /// What is said first when another program made the golden.
-    fn other_maker(&self) -> Vec<Said> {
-        let this = Maker::this();
+    fn other_producer(&self) -> Vec<DiffLine> {
+        let this = Producer::this();
         match &self.golden.head.made_by {
-            Some(maker) if *maker != this => {
-                let mesher = if maker.mesher == this.mesher { "" } else { "; the mesher has another version, so meshes may differ" };
-                vec![Said::Words(format!("made by {}, compared by {}{mesher}", maker.text(), this.text()))]
+            Some(producer) if *producer != this => {
+                let mesher = if producer.mesher == this.mesher { "" } else { "; the mesher has another version, so meshes may differ" };
+                vec![DiffLine::Words(format!("made by {}, compared by {}{mesher}", producer.text(), this.text()))]
             }
             _ => Vec::new(),
         }

@@ -1,12 +1,12 @@
 //! Reads a golden file, with a place for everything that is wrong.
 
-use super::file::{Case, Compare, Entry, Flaw, Golden, Head, Maker, Section, VERSION};
+use super::file::{Case, Compare, Entry, Flaw, Golden, Head, Producer, Section, VERSION};
 use super::line::parse_line;
 use super::quotes::{end_of_quote, unquoted};
 use super::words::{is_code, kind_of};
 
 impl Golden {
-    /// Reads a golden file. Lines of the body that make no sense are left out and told beside it; a head that makes no
+    /// Reads a golden file. Lines of the body that make no sense are left out and reported beside it; a head that makes no
     /// sense is the error.
     pub fn parse(bytes: &[u8]) -> Result<(Self, Vec<Flaw>), Vec<Flaw>> {
         let text = std::str::from_utf8(bytes).map_err(|error| {
@@ -73,16 +73,16 @@ impl Reader {
     /// Reads the head; gives the index of the first line of the body.
     fn head(&mut self, lines: &[&str]) -> usize {
         let mut body = lines.len();
-        let mut greeted = false;
+        let mut has_version = false;
         for (k, line) in lines.iter().enumerate() {
             let (content, _) = split_comment(line.trim_start());
             let word = content.split_whitespace().next().unwrap_or("");
             if word.is_empty() {
                 continue;
             }
-            if !greeted {
-                self.greeting(content, k + 1);
-                greeted = true;
+            if !has_version {
+                self.version_line(content, k + 1);
+                has_version = true;
                 if !self.flaws.is_empty() {
                     return lines.len();
                 }
@@ -93,7 +93,7 @@ impl Reader {
                 self.flaw(k + 1, what);
             }
         }
-        if !greeted {
+        if !has_version {
             self.flaw(1, format!("a golden file begins with `loft golden {VERSION}`"));
         }
         // Comments right above the body, without a blank line between, belong to it.
@@ -111,7 +111,7 @@ impl Reader {
         end
     }
 
-    fn greeting(&mut self, content: &str, line: usize) {
+    fn version_line(&mut self, content: &str, line: usize) {
         let words: Vec<&str> = content.split_whitespace().collect();
         match words.as_slice() {
             ["loft", "golden", version] if version.parse() == Ok(VERSION) => {}
@@ -129,7 +129,7 @@ impl Reader {
                 if self.head.made_at.replace(k).is_some() {
                     return Err("`made by` is given twice".to_owned());
                 }
-                self.head.made_by = Some(maker(rest).ok_or("expected `made by loft 0.1.0 mesher 1`")?);
+                self.head.made_by = Some(producer(rest).ok_or("expected `made by loft 0.1.0 mesher 1`")?);
             }
             "tolerance" => {
                 let found = crate::base::text::parse_real(rest).filter(|x| x.is_finite() && *x >= 0.0);
@@ -212,10 +212,10 @@ impl Reader {
     }
 }
 
-fn maker(rest: &str) -> Option<Maker> {
+fn producer(rest: &str) -> Option<Producer> {
     let words: Vec<&str> = rest.split_whitespace().collect();
     match words.as_slice() {
-        ["by", "loft", version, "mesher", mesher] => Some(Maker { loft: (*version).to_owned(), mesher: mesher.parse().ok()? }),
+        ["by", "loft", version, "mesher", mesher] => Some(Producer { loft: (*version).to_owned(), mesher: mesher.parse().ok()? }),
         _ => None,
     }
 }

@@ -29,7 +29,7 @@ fn base(name: &str) -> &str {
 impl Renames {
     /// None yet, between lines of these names, the new ones of a script that uses these names.
     pub fn between(old: &[Line], new: &[Line], used: &BTreeSet<String>) -> Self {
-        let named = old.iter().chain(new).filter(|line| !line.loose && !line.is_diagnostic());
+        let named = old.iter().chain(new).filter(|line| !line.unnamed && !line.is_diagnostic());
         Self { known: named.map(|line| base(&line.name).to_owned()).collect(), used: used.clone(), ..Self::default() }
     }
 

@@ -5,11 +5,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::channel;
 use std::thread;
 
+use super::describe::{self, DiffLine};
 use super::discover::{State, Test};
 use super::file::{Flaw, Golden, Head};
 use super::model_test::ModelTest;
 use super::scratch::Scratch;
-use super::tell::{self, Said};
 use super::verdict::{CaseResult, Verdict};
 use crate::base::job::Job;
 use crate::base::limits;
@@ -55,12 +55,12 @@ pub fn run_all(tests: &[Test], settings: &Settings, each: &mut dyn FnMut(&[CaseR
         }
         drop(send);
         let mut waiting: Vec<Option<Vec<CaseResult>>> = vec![None; tests.len()];
-        let mut told = 0;
+        let mut reported = 0;
         for (k, results) in receive {
             waiting[k] = Some(results);
-            while let Some(results) = waiting.get_mut(told).and_then(Option::take) {
+            while let Some(results) = waiting.get_mut(reported).and_then(Option::take) {
                 each(&results);
-                told += 1;
+                reported += 1;
             }
         }
         waiting.into_iter().flatten().for_each(|results| each(&results));
@@ -108,14 +108,18 @@ pub fn run_one_again(test: &Test, settings: &Settings, kept: &mut Kept) -> Vec<C
     let text = match read_limited(&test.script, limits::SOURCE_BYTES + 1) {
         Ok(text) => text,
         Err(error) => {
-            return alone(CaseResult::new(&test.name, Verdict::Unreadable, format!("cannot read {}: {}", test.name, said(&error))));
+            return alone(CaseResult::new(
+                &test.name,
+                Verdict::Unreadable,
+                format!("cannot read {}: {}", test.name, why_unreadable(&error)),
+            ));
         }
     };
     let read = match test.state {
         State::NoGolden => Ok((Golden { head: Head::fresh(), sections: Vec::new() }, Vec::new())),
         _ => match read_limited(&test.golden, limits::SOURCE_BYTES) {
             Ok(bytes) => Golden::parse(&bytes),
-            Err(error) => Err(vec![Flaw { line: 0, what: said(&error) }]),
+            Err(error) => Err(vec![Flaw { line: 0, what: why_unreadable(&error) }]),
         },
     };
     let golden = match read {
@@ -131,7 +135,7 @@ pub fn run_one_again(test: &Test, settings: &Settings, kept: &mut Kept) -> Vec<C
 }
 
 /// Why a file cannot be read.
-pub(super) fn said(error: &FileError) -> String {
+pub(super) fn why_unreadable(error: &FileError) -> String {
     match error {
         FileError::Missing { .. } => "there is no such file".to_owned(),
         FileError::Outside => "it lies outside the allowed folders".to_owned(),
@@ -144,9 +148,9 @@ fn unreadable(test: &Test, golden: &str, flaws: &[Flaw], accept: bool) -> CaseRe
     let place = |f: &Flaw| if f.line == 0 { format!("{golden}: {}", f.what) } else { format!("{golden}:{}: {}", f.line, f.what) };
     let mut lines = flaws.iter().map(place);
     let mut result = CaseResult::new(&test.name, Verdict::Unreadable, lines.next().unwrap_or_default());
-    result.said = lines.take(tell::MOST).map(Said::Words).collect();
-    if flaws.len() > tell::MOST + 1 {
-        result.said.push(Said::Words(format!("and {} more", flaws.len() - tell::MOST - 1)));
+    result.lines = lines.take(describe::MOST).map(DiffLine::Words).collect();
+    if flaws.len() > describe::MOST + 1 {
+        result.lines.push(DiffLine::Words(format!("and {} more", flaws.len() - describe::MOST - 1)));
     }
     if accept { result.help("the head is written by hand, and only you can fix it") } else { result }
 }

@@ -2,12 +2,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::cells::{Entry, measure_of, together};
+use super::cells::{CellValue, measure_of, together};
 use super::compare::{Allowance, one_thing};
+use super::details::{Detail, Details, Pairs};
 use super::diff::size_of;
-use super::grow::{Growing, line, yes};
 use super::line::{Line, on_one_line};
-use super::looks::{Look, Looks, Pairs};
+use super::line_builder::{LineBuilder, line, yes};
 use super::quote;
 use super::values::Value;
 use super::words::{Kind, Measure, fields_of, unit_of};
@@ -21,7 +21,7 @@ const ROWS: usize = 10_000;
 
 /// The lines of one run.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Found {
+pub struct CaseLines {
     /// In the order of writing.
     pub lines: Vec<Line>,
     /// Diagonal of the model's box, model units; 0 when nothing has a place.
@@ -30,59 +30,58 @@ pub struct Found {
     pub names: BTreeSet<String>,
 }
 
-/// All that a golden holds of this run and of what was seen of its model. `hide` is a folder that messages may name and a golden
-/// may not.
-pub fn of(outcome: &Outcome, looks: Looks, hide: &str) -> Found {
+/// All that a golden holds of this run. `hide` is a folder that messages may name and a golden may not.
+pub fn of(outcome: &Outcome, details: Details, hide: &str) -> CaseLines {
     let of_curves = outcome.report.bounds.map_or(0.0, |[a, b]| (glam::DVec3::from(b) - glam::DVec3::from(a)).length());
-    // Without curves the boxes of what there is tell the size.
-    let size = if of_curves > 0.0 { of_curves } else { size_of(&of_report(&outcome.report, looks.clone(), 0.0)) };
-    let mut lines = of_report(&outcome.report, looks, size);
+    // Without curves the boxes of what there is give the size.
+    let size = if of_curves > 0.0 { of_curves } else { size_of(&of_report(&outcome.report, details.clone(), 0.0)) };
+    let mut lines = of_report(&outcome.report, details, size);
     lines.iter_mut().for_each(|line| clean(line, size));
     let row = |d: &Diagnostic| diagnostic(d, &outcome.sources, hide);
     lines.extend(outcome.diagnostics.iter().map(row));
     let texts = (0..).map_while(|k| outcome.sources.get(FileId::at(k)));
     let names = texts.flat_map(|file| quote::tokens(&file.text).into_iter().filter(|t| quote::is_name(t)).map(str::to_owned)).collect();
-    Found { lines, size, names }
+    CaseLines { lines, size, names }
 }
 
-fn of_report(report: &Report, looks: Looks, size: f64) -> Vec<Line> {
-    let make = Maker { model: &report.units };
+fn of_report(report: &Report, details: Details, size: f64) -> Vec<Line> {
+    let make = LineMaker { model: &report.units };
     let mut lines = Vec::new();
     if report.network.curves > 0 {
         let (n, modeling) = (&report.network, report.modeling.len());
         let counts = [("curves", n.curves), ("links", n.links), ("nodes", n.nodes), ("modeling", modeling)];
         lines.push(counts.into_iter().fold(line("network", ""), |line, (word, n)| line.count(word, n)));
     }
-    // A run that failed early was not looked at.
-    let beside = |all: &[Look], k: usize| all.get(k).cloned().unwrap_or_default();
-    let looked = |made: Growing, look: Look| made.all(look.pairs).loose(look.loose);
-    lines.extend(looks.points.into_iter().map(Growing));
-    lines.extend(report.curves.iter().enumerate().map(|(k, row)| looked(make.curve(row), beside(&looks.curves, k))));
+    // A run that failed early has no details.
+    let beside = |all: &[Detail], k: usize| all.get(k).cloned().unwrap_or_default();
+    let with_detail = |made: LineBuilder, detail: Detail| made.all(detail.pairs).unnamed(detail.unnamed);
+    lines.extend(details.points.into_iter().map(LineBuilder));
+    lines.extend(report.curves.iter().enumerate().map(|(k, row)| with_detail(make.curve(row), beside(&details.curves, k))));
     // A whole curve without kinks stands there already, under its name or without one.
     let whole: Vec<Line> = lines.iter().filter(|line| line.0.kind == "curve").map(|line| line.0.clone()).collect();
-    let is_curve = |(row, line): &(&ModelingRow, Growing)| {
-        let there = |c: &Line| if line.0.loose { c.loose && one_thing(c, &line.0, size) } else { c.name == line.0.name };
+    let is_curve = |(row, line): &(&ModelingRow, LineBuilder)| {
+        let there = |c: &Line| if line.0.unnamed { c.unnamed && one_thing(c, &line.0, size) } else { c.name == line.0.name };
         row.kinks == 0 && whole.iter().any(|c| there(c) && c.get("links") == line.0.get("links"))
     };
-    let modeling = report.modeling.iter().enumerate().map(|(k, row)| (row, looked(make.modeling(row), beside(&looks.modeling, k))));
+    let modeling = report.modeling.iter().enumerate().map(|(k, row)| (row, with_detail(make.modeling(row), beside(&details.modeling, k))));
     lines.extend(modeling.filter(|found| !is_curve(found)).map(|found| found.1));
     if !report.surfaces.is_empty() {
         let t = &report.topology;
         let counts = [("patches", t.patches), ("edges", t.edges), ("vertices", t.vertices), ("shells", t.shells)];
         lines.push(counts.into_iter().fold(line("topology", ""), |line, (word, n)| line.count(word, n)));
     }
-    lines.extend(report.surfaces.iter().enumerate().map(|(k, row)| looked(make.surface(row), beside(&looks.surfaces, k))));
+    lines.extend(report.surfaces.iter().enumerate().map(|(k, row)| with_detail(make.surface(row), beside(&details.surfaces, k))));
     let by_name = |all: &BTreeMap<String, Pairs>, name: &str| all.get(name).cloned().unwrap_or_default();
-    lines.extend(report.shells.iter().map(|row| make.shell(row).all(by_name(&looks.shells, &row.name))));
-    lines.extend(looks.groups.into_iter().chain(looks.settings).map(Growing));
-    lines.extend(report.meshes.iter().map(|row| make.mesh(row, &looks.declared).all(by_name(&looks.meshes, &row.name))));
-    lines.extend(looks.sets.into_iter().map(Growing));
+    lines.extend(report.shells.iter().map(|row| make.shell(row).all(by_name(&details.shells, &row.name))));
+    lines.extend(details.groups.into_iter().chain(details.settings).map(LineBuilder));
+    lines.extend(report.meshes.iter().map(|row| make.mesh(row, &details.declared).all(by_name(&details.meshes, &row.name))));
+    lines.extend(details.sets.into_iter().map(LineBuilder));
     let tables = report.reports.iter().enumerate();
-    lines.extend(tables.flat_map(|(k, table)| make.table(table, !looks.labelled.get(k).copied().unwrap_or(true))));
+    lines.extend(tables.flat_map(|(k, table)| make.table(table, !details.labelled.get(k).copied().unwrap_or(true))));
     let check = |row: &crate::session::report::CheckRow| line("check", &row.label).word("", if row.pass { "pass" } else { "fail" });
-    lines.extend(report.checks.iter().enumerate().map(|(k, row)| looked(check(row), beside(&looks.checks, k))));
-    lines.extend(looks.outputs.into_iter().map(Growing));
-    for (path, table) in looks.exported {
+    lines.extend(report.checks.iter().enumerate().map(|(k, row)| with_detail(check(row), beside(&details.checks, k))));
+    lines.extend(details.outputs.into_iter().map(LineBuilder));
+    for (path, table) in details.exported {
         lines.extend(make.rows(&Table { title: path, ..table }));
     }
     lines.into_iter().map(|line| line.0).collect()
@@ -105,7 +104,7 @@ fn clean(line: &mut Line, size: f64) {
             // A tolerance may be as small as one likes.
             (Value::Cells(_), Some(Kind::Limit)) => {}
             (Value::Cells(row), _) => row.iter_mut().for_each(|entry| {
-                if let Entry::Numbers { all, unit, .. } = entry {
+                if let CellValue::Numbers { all, unit, .. } = entry {
                     let measure = measure_of(unit);
                     all.iter_mut().for_each(|x| put(x, measure));
                 }
@@ -116,11 +115,11 @@ fn clean(line: &mut Line, size: f64) {
 }
 
 /// Makes lines in a model unit.
-struct Maker<'m> {
+struct LineMaker<'m> {
     model: &'m str,
 }
 
-impl Maker<'_> {
+impl LineMaker<'_> {
     fn length(&self, x: Option<f64>, power: u8) -> Option<Value> {
         x.map(|x| Value::Real(x, unit_of(Measure::Length(power), self.model)))
     }
@@ -134,23 +133,23 @@ impl Maker<'_> {
         corners.map(|corners| Value::Corners(corners, self.model.to_owned()))
     }
 
-    fn curve(&self, row: &CurveRow) -> Growing {
+    fn curve(&self, row: &CurveRow) -> LineBuilder {
         line("curve", &row.name).word("kind", row.kind).maybe("length", self.length(Some(row.length), 1)).count("links", row.links)
     }
 
-    fn modeling(&self, row: &ModelingRow) -> Growing {
+    fn modeling(&self, row: &ModelingRow) -> LineBuilder {
         let made = line("modeling", &row.name).maybe("length", self.length(Some(row.length), 1));
         made.count("links", row.links).count("kinks", row.kinks)
     }
 
-    fn surface(&self, row: &SurfaceRow) -> Growing {
+    fn surface(&self, row: &SurfaceRow) -> LineBuilder {
         let made = line("surface", &row.name).word("kind", row.kind);
         let made = made.maybe("flow", row.flow.clone().map(Value::Word));
         let made = made.count("patches", row.patches).count("edges", row.edges).count("vertices", row.vertices);
         made.maybe("area", self.length(row.area, 2)).maybe("box", self.corners(row.corners))
     }
 
-    fn shell(&self, row: &ShellRow) -> Growing {
+    fn shell(&self, row: &ShellRow) -> LineBuilder {
         let made = line("shell", &row.name).count("faces", row.faces).word("closed", yes(row.closed));
         let made = made.maybe("area", self.length(row.area, 2)).maybe("volume", self.length(row.volume, 3));
         let made = made.maybe("gap", self.length(row.gap, 1)).maybe("angle", self.angle(row.angle));
@@ -158,27 +157,27 @@ impl Maker<'_> {
     }
 
     /// A reported table and its rows.
-    fn table(&self, table: &Table, loose: bool) -> Vec<Growing> {
+    fn table(&self, table: &Table, unnamed: bool) -> Vec<LineBuilder> {
         let column = |c: &Column| c.unit.as_ref().map_or_else(|| c.name.clone(), |unit| format!("{} [{unit}]", c.name));
         let columns: Vec<String> = table.columns.iter().map(column).collect();
         let head = line("report", &table.title).count("rows", table.rows.len()).word("columns", &columns.join(", "));
-        std::iter::once(head).chain(self.rows(table)).map(|line| line.loose(loose)).collect()
+        std::iter::once(head).chain(self.rows(table)).map(|line| line.unnamed(unnamed)).collect()
     }
 
     /// The rows of a table; of a long one the first, and one that is made of all the others.
-    fn rows(&self, table: &Table) -> Vec<Growing> {
+    fn rows(&self, table: &Table) -> Vec<LineBuilder> {
         let unit = |c: usize| table.columns.get(c).and_then(|c| c.unit.as_deref()).unwrap_or("");
-        let cells = |row: &[Cell]| row.iter().enumerate().map(|(c, cell)| Entry::of(cell, unit(c))).collect();
+        let cells = |row: &[Cell]| row.iter().enumerate().map(|(c, cell)| CellValue::of(cell, unit(c))).collect();
         let row = |name: String, row: &[Cell]| line("row", &format!("{} {name}", table.title)).put("cells", Value::Cells(cells(row)));
         let (first, rest) = table.rows.split_at(table.rows.len().min(ROWS));
-        let mut made: Vec<Growing> = first.iter().enumerate().map(|(k, cells)| row((k + 1).to_string(), cells)).collect();
+        let mut made: Vec<LineBuilder> = first.iter().enumerate().map(|(k, cells)| row((k + 1).to_string(), cells)).collect();
         if !rest.is_empty() {
             made.push(row("rest".to_owned(), &together(rest)));
         }
         made
     }
 
-    fn mesh(&self, row: &MeshRow, declared: &BTreeSet<String>) -> Growing {
+    fn mesh(&self, row: &MeshRow, declared: &BTreeSet<String>) -> LineBuilder {
         let made = line("mesh", &row.name).count("nodes", row.nodes).count("triangles", row.triangles).count("quads", row.quads);
         let made = made.maybe("order", (row.order != 1).then(|| Value::Count(u64::from(row.order))));
         let made = made.maybe("min_angle", self.angle(row.min_angle)).maybe("max_angle", self.angle(row.max_angle));

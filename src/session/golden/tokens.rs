@@ -1,6 +1,6 @@
 //! Texts compared token by token: numbers within a tolerance, everything else letter by letter.
 
-use super::tell::two_numbers;
+use super::describe::two_numbers;
 
 /// A piece of a line.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,6 +1,6 @@
 //! What stands behind the words of a golden file: written, and read back.
 
-use super::cells::{self, Entry};
+use super::cells::{self, CellValue};
 use super::quotes::{end_of_quote, label, phrase, unquoted};
 use super::words::{Kind, Measure};
 use crate::lang::values::units::{length_unit, number_text};
@@ -21,7 +21,7 @@ pub enum Value {
     /// Numbers and their unit (empty for bare ones).
     List(Vec<f64>, String),
     /// A row of a table.
-    Cells(Vec<Entry>),
+    Cells(Vec<CellValue>),
 }
 
 /// Numbers as far as the largest of them is written with so many significant digits.

@@ -1,6 +1,6 @@
 //! What became of a run of a model that is compared with its golden.
 
-use super::tell::Said;
+use super::describe::DiffLine;
 
 /// What became of a run, from good to bad.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -57,7 +57,7 @@ pub struct CaseResult {
     /// One sentence; empty when all is well.
     pub message: String,
     /// What differs.
-    pub said: Vec<Said>,
+    pub lines: Vec<DiffLine>,
     /// What to do about it.
     pub help: Option<String>,
     /// How long it took.
@@ -66,7 +66,7 @@ pub struct CaseResult {
 
 impl CaseResult {
     pub(super) fn new(name: impl Into<String>, verdict: Verdict, message: impl Into<String>) -> Self {
-        Self { name: name.into(), verdict, message: message.into(), said: Vec::new(), help: None, seconds: 0.0 }
+        Self { name: name.into(), verdict, message: message.into(), lines: Vec::new(), help: None, seconds: 0.0 }
     }
 
     pub(super) fn help(self, text: impl Into<String>) -> Self {

@@ -88,7 +88,7 @@ const BOX: Fields = &[field("box", Kind::Corners)];
 const MOMENTS: Fields = &[list("centroid", 1), list("spread", 2), list("skew", 3)];
 /// Area vector: area times mean normal.
 const SIDE: Fields = &[list("side", 2)];
-/// Volume between it and its centroid, negative where the normal looks at the centroid.
+/// Volume between it and its centroid, negative where the normal points to the centroid.
 const INSIDE: Fields = &[length("inside", 3)];
 /// The way of a curve.
 const ENDS: Fields = &[list("from", 1), list("to", 1)];

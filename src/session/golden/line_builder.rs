@@ -3,15 +3,15 @@
 use super::line::Line;
 use super::values::Value;
 
-/// A line that grows word by word.
-pub struct Growing(pub Line);
+/// A line that is put together word by word.
+pub struct LineBuilder(pub Line);
 
 /// A line without words.
-pub fn line(kind: &str, name: &str) -> Growing {
-    Growing(Line { kind: kind.to_owned(), name: name.to_owned(), ..Line::default() })
+pub fn line(kind: &str, name: &str) -> LineBuilder {
+    LineBuilder(Line { kind: kind.to_owned(), name: name.to_owned(), ..Line::default() })
 }
 
-impl Growing {
+impl LineBuilder {
     /// With this word.
     pub fn put(mut self, word: &'static str, value: Value) -> Self {
         self.0.pairs.push((word, value));
@@ -38,11 +38,11 @@ impl Growing {
         self
     }
     /// Without a name, if that is so: its name is how the script says it.
-    pub fn loose(mut self, is: bool) -> Self {
+    pub fn unnamed(mut self, is: bool) -> Self {
         if is {
-            let said = super::line::on_one_line(&self.0.name);
-            self.0.name = if said.is_empty() { "…".to_owned() } else { said };
-            self.0.loose = true;
+            let name = super::line::on_one_line(&self.0.name);
+            self.0.name = if name.is_empty() { "…".to_owned() } else { name };
+            self.0.unnamed = true;
         }
         self
     }

@@ -6,15 +6,15 @@ use super::quotes::{label, quoted};
 use super::values::{Value, rounded};
 use super::words::{Kind, Measure, kind_of};
 
-/// Changes of one run that are told; further ones are counted.
+/// Changes of one run that are described; further ones are counted.
 pub const MOST: usize = 40;
 
 /// Significant digits that two numbers get at least.
 const DIGITS: usize = 6;
 
-/// A line of what is told.
+/// A line of a description.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Said {
+pub enum DiffLine {
     /// As it was.
     Old(String),
     /// As it is.
@@ -23,7 +23,7 @@ pub enum Said {
     Words(String),
 }
 
-impl Said {
+impl DiffLine {
     /// As text: `- ` before what was, `+ ` before what is.
     pub fn text(&self, color: bool) -> String {
         let paint = |code: &str, text: String| if color { format!("\u{1b}[{code}m{text}\u{1b}[0m") } else { text };
@@ -36,40 +36,40 @@ impl Said {
 }
 
 /// All changes, up to [`MOST`] in full.
-pub fn changes(changes: &[Change], allowance: Allowance) -> Vec<Said> {
-    let mut said: Vec<Said> = changes.iter().take(MOST).flat_map(|change| one(change, allowance)).collect();
+pub fn changes(changes: &[Change], allowance: Allowance) -> Vec<DiffLine> {
+    let mut lines: Vec<DiffLine> = changes.iter().take(MOST).flat_map(|change| one(change, allowance)).collect();
     if changes.len() > MOST {
-        said.push(Said::Words(format!("and {} more lines", changes.len() - MOST)));
+        lines.push(DiffLine::Words(format!("and {} more lines", changes.len() - MOST)));
     }
-    said
+    lines
 }
 
-fn one(change: &Change, allowance: Allowance) -> Vec<Said> {
+fn one(change: &Change, allowance: Allowance) -> Vec<DiffLine> {
     // Lines are shown with more digits than rounding needs, so that what differs is seen.
     let text = |line: &Line| line.text(allowance.tolerance * 0.01);
     match change {
-        Change::Gone(line) => vec![Said::Old(text(line)), Said::Words(format!("{} is gone", subject(line)))],
-        Change::New(line) => vec![Said::New(text(line)), Said::Words(format!("{} is new", subject(line)))],
+        Change::Gone(line) => vec![DiffLine::Old(text(line)), DiffLine::Words(format!("{} is gone", subject(line)))],
+        Change::New(line) => vec![DiffLine::New(text(line)), DiffLine::Words(format!("{} is new", subject(line)))],
         Change::Renamed { old, new } => {
-            let told = |line: &Line| if line.loose { format!("`{}`", line.name) } else { label(&line.name) };
-            vec![Said::Words(format!("{} {} is called {} now; nothing else about it changed", old.kind, told(old), told(new)))]
+            let name = |line: &Line| if line.unnamed { format!("`{}`", line.name) } else { label(&line.name) };
+            vec![DiffLine::Words(format!("{} {} is called {} now; nothing else about it changed", old.kind, name(old), name(new)))]
         }
         Change::Changed { old, new, moves } => {
-            let head = [Said::Old(text(old)), Said::New(text(new))];
+            let head = [DiffLine::Old(text(old)), DiffLine::New(text(new))];
             // Words of which none was there are those of another version of loft.
             let fresh: Vec<&str> = moves.iter().filter(|m| m.old.is_none()).map(|m| m.word).collect();
             let many = fresh.len() > 2;
             let over = is_turned_over(moves, allowance);
             let is_left_out = |m: &Move| many && m.old.is_none() || over && matches!(m.word, "side" | "inside" | "hash");
             let turned = over.then(|| "its normals are reversed".to_owned());
-            let told = turned.into_iter().chain(moves.iter().filter(|m| !is_left_out(m)).flat_map(|m| in_words(m, moves, allowance)));
-            let words = told.chain(many.then(|| format!("{} are new", fresh.join(", "))));
-            head.into_iter().chain(words.map(|w| Said::Words(format!("{}: {w}", subject(new))))).collect()
+            let described = turned.into_iter().chain(moves.iter().filter(|m| !is_left_out(m)).flat_map(|m| in_words(m, moves, allowance)));
+            let words = described.chain(many.then(|| format!("{} are new", fresh.join(", "))));
+            head.into_iter().chain(words.map(|w| DiffLine::Words(format!("{}: {w}", subject(new))))).collect()
         }
     }
 }
 
-/// Whether something shows its other side and nothing else about its place changed: what tells the side has the other sign.
+/// Whether something shows its other side and nothing else about its place changed: the words of the side have the other sign.
 fn is_turned_over(moves: &[Move], allowance: Allowance) -> bool {
     let negated = |m: &Move| match (m.kind, &m.old, &m.new) {
         (Kind::Real(measure), Some(Value::Real(a, _)), Some(Value::Real(b, _))) => allowance.excess(measure, -a, *b).is_none(),
@@ -94,7 +94,7 @@ fn subject(line: &Line) -> String {
     }
     match kind_of(&line.kind) {
         Some(kind) if !kind.named => line.kind.clone(),
-        _ if line.loose => format!("{} `{}`", line.kind, line.name),
+        _ if line.unnamed => format!("{} `{}`", line.kind, line.name),
         Some(kind) if !kind.spoken => line.name.clone(),
         _ if line.kind == "check" => format!("check {}", quoted(&line.name)),
         _ => format!("{} {}", line.kind, label(&line.name)),
@@ -241,8 +241,8 @@ mod tests {
     fn said(old: &str, new: &str) -> Vec<String> {
         let allowance = Allowance { tolerance: 1e-9, size: 1.0 };
         let found = compare(&[parse_line(old).unwrap()], &[parse_line(new).unwrap()], &std::collections::BTreeSet::new(), allowance);
-        let words = |said: Said| match said {
-            Said::Words(text) => Some(text),
+        let words = |said: DiffLine| match said {
+            DiffLine::Words(text) => Some(text),
             _ => None,
         };
         changes(&found, allowance).into_iter().filter_map(words).collect()

@@ -1,8 +1,8 @@
-//! What things that something is of are where: of a group, a rule of a mesh, an output.
+//! The things that a group, a rule of a mesh or an output is of: how many of each kind, and where they are.
 
 use glam::DVec3;
 
-use super::looks::{Pairs, of_box, of_mass};
+use super::details::{Pairs, of_box, of_mass};
 use super::values::Value;
 use crate::base::bbox::Box3;
 use crate::lang::eval::context::Cx;
@@ -14,7 +14,7 @@ use crate::surface::{Domain, Surface};
 
 /// Things by kind, and where they are: each counts as much as any other.
 #[derive(Clone, Debug, Default)]
-pub struct Held {
+pub struct Contents {
     points: u64,
     curves: u64,
     surfaces: u64,
@@ -23,12 +23,12 @@ pub struct Held {
     parts: Vec<Moments>,
 }
 
-impl Held {
+impl Contents {
     /// Of these things; what has no place is left out.
     pub fn of<'v>(cx: &mut Cx, things: impl IntoIterator<Item = &'v Thing>) -> Self {
-        let mut held = Self::default();
-        things.into_iter().for_each(|thing| held.add(cx, thing));
-        held
+        let mut contents = Self::default();
+        things.into_iter().for_each(|thing| contents.add(cx, thing));
+        contents
     }
 
     /// In words.

@@ -1,12 +1,12 @@
-//! Where everything of a model is and which side it shows: what the lines of a golden say beside the rows of the report.
+//! What golden lines hold beyond the rows of the report: where everything is, which side it shows, what is asked of meshes.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec3;
 
-use super::grow::{Growing, line};
-use super::held::Held;
+use super::contents::Contents;
 use super::line::Line;
+use super::line_builder::{LineBuilder, line};
 use super::requests;
 use super::values::Value;
 use super::words::{Measure, unit_of};
@@ -27,24 +27,24 @@ use crate::session::report::Table;
 /// Words and values of a line.
 pub type Pairs = Vec<(&'static str, Value)>;
 
-/// What is said beside a row of the report.
+/// What a line holds beyond its row of the report.
 #[derive(Clone, Debug, Default)]
-pub struct Look {
+pub struct Detail {
     /// The thing has no name.
-    pub loose: bool,
-    /// What is said.
+    pub unnamed: bool,
+    /// Words and values.
     pub pairs: Pairs,
 }
 
-/// What is said beside the report.
+/// What the lines of a golden hold beyond the report.
 #[derive(Clone, Debug, Default)]
-pub struct Looks {
+pub struct Details {
     /// Of each curve, in the order of the report.
-    pub curves: Vec<Look>,
+    pub curves: Vec<Detail>,
     /// Of each modeling curve.
-    pub modeling: Vec<Look>,
+    pub modeling: Vec<Detail>,
     /// Of each surface.
-    pub surfaces: Vec<Look>,
+    pub surfaces: Vec<Detail>,
     /// Of shells by name.
     pub shells: BTreeMap<String, Pairs>,
     /// Of meshes by name.
@@ -52,7 +52,7 @@ pub struct Looks {
     /// Names that the script declares.
     pub declared: BTreeSet<String>,
     /// Of each check.
-    pub checks: Vec<Look>,
+    pub checks: Vec<Detail>,
     /// Whether each report has a label.
     pub labelled: Vec<bool>,
     /// Lines of points.
@@ -69,60 +69,60 @@ pub struct Looks {
     pub outputs: Vec<Line>,
 }
 
-/// Looks at an evaluated model.
-pub fn of(cx: &mut Cx) -> Looks {
-    let mut looks = Looks::default();
-    let Some(tolerance) = cx.tolerance_used() else { return looks };
+/// Of an evaluated model.
+pub fn of(cx: &mut Cx) -> Details {
+    let mut details = Details::default();
+    let Some(tolerance) = cx.tolerance_used() else { return details };
     let unit = cx.unit().name;
     if let Ok(sound) = cx.sound(ModuleId::MAIN) {
         let Sound { parts, network, model, .. } = &sound;
-        looks.points = parts.points.iter().map(|p| line("point", &p.name).put("at", point(p.value, unit)).0).collect();
+        details.points = parts.points.iter().map(|p| line("point", &p.name).put("at", point(p.value, unit)).0).collect();
         let names = |names: Vec<&str>| names.into_iter().map(str::to_owned).collect::<BTreeSet<String>>();
         let curves = names(parts.curves.iter().map(|c| &*c.name).collect());
         let modeling = names(parts.modeling.iter().map(|c| &*c.name).collect());
-        looks.declared.extend(curves.iter().cloned());
-        looks.declared.extend(names(parts.surfaces.iter().map(|s| &*s.name).collect()));
+        details.declared.extend(curves.iter().cloned());
+        details.declared.extend(names(parts.surfaces.iter().map(|s| &*s.name).collect()));
         let order = collect::curves_in_order(parts, network);
-        looks.curves = par::map(order.len(), |k| {
+        details.curves = par::map(order.len(), |k| {
             let curve = &network.curves[order[k]];
             let whole = Chain::of_curve(&curve.curve);
-            let mut look = of_chain(&whole, &Moments::of_curve(&curve.curve), !curves.contains(&curve.name), &tolerance, unit);
-            look.pairs.extend(of_box(curve.curve.bbox(), unit));
-            look
+            let mut detail = of_chain(&whole, &Moments::of_curve(&curve.curve), !curves.contains(&curve.name), &tolerance, unit);
+            detail.pairs.extend(of_box(curve.curve.bbox(), unit));
+            detail
         });
         let chains = collect::chains(cx, parts, network, &tolerance);
-        looks.modeling = par::map(chains.len(), |k| {
+        details.modeling = par::map(chains.len(), |k| {
             let (name, _, chain) = &chains[k];
             let declared = modeling.contains(name) || curves.contains(name);
             of_chain(chain, &Moments::of_chain(chain), !declared, &tolerance, unit)
         });
         let order = collect::surfaces_in_order(parts, model);
-        looks.surfaces = par::map(order.len(), |k| {
+        details.surfaces = par::map(order.len(), |k| {
             let moments = Moments::of_surface(&model.surfaces[order[k]].surface);
-            Look { loose: false, pairs: of_sheet(&moments, unit) }
+            Detail { unnamed: false, pairs: of_sheet(&moments, unit) }
         });
     }
     for shell in cx.shells(ModuleId::MAIN).unwrap_or_default() {
-        looks.declared.insert(shell.name.to_string());
+        details.declared.insert(shell.name.to_string());
         if let Ok(moments) = of_shell(cx, &shell.value) {
-            looks.shells.insert(shell.name.to_string(), of_sheet(&moments, unit));
+            details.shells.insert(shell.name.to_string(), of_sheet(&moments, unit));
         }
     }
     for group in cx.groups(ModuleId::MAIN).unwrap_or_default() {
-        looks.declared.insert(group.name.to_string());
-        let held = Held::of(cx, &group.value);
-        looks.groups.push(line("group", &group.name).all(held.pairs(unit)).0);
+        details.declared.insert(group.name.to_string());
+        let contents = Contents::of(cx, &group.value);
+        details.groups.push(line("group", &group.name).all(contents.pairs(unit)).0);
     }
     for (name, value) in cx.mesh_values() {
-        looks.declared.insert(name.to_string());
+        details.declared.insert(name.to_string());
         if let Ok(mesh) = cx.mesh(&value) {
-            looks.meshes.insert(name.to_string(), of_mesh(&mesh, unit));
-            let sets = mesh.groups.iter().map(|group| of_set(&mesh, group, &name, unit, looks.declared.contains(&group.name)));
-            looks.sets.extend(sets);
+            details.meshes.insert(name.to_string(), of_mesh(&mesh, unit));
+            let sets = mesh.groups.iter().map(|group| of_set(&mesh, group, &name, unit, details.declared.contains(&group.name)));
+            details.sets.extend(sets);
         }
     }
-    requests::all(cx, &mut looks);
-    looks
+    requests::all(cx, &mut details);
+    details
 }
 
 /// A place.
@@ -158,23 +158,23 @@ fn of_sheet(moments: &Moments, unit: &str) -> Pairs {
 }
 
 /// Where a curve runs. One without a name has no direction of its own.
-fn of_chain(chain: &Chain, moments: &Moments, loose: bool, tolerance: &Tolerance, unit: &str) -> Look {
+fn of_chain(chain: &Chain, moments: &Moments, unnamed: bool, tolerance: &Tolerance, unit: &str) -> Detail {
     let (mut ends, mut round) = ([chain.start(), chain.end()], moments.side);
     let mut pairs = of_mass(moments, unit);
     if chain.is_closed(tolerance) {
         let most = round.abs().max_element();
         let first = round.to_array().into_iter().find(|x| x.abs() > 0.5 * most);
-        if loose && first.is_some_and(|x| x < 0.0) {
+        if unnamed && first.is_some_and(|x| x < 0.0) {
             round = -round;
         }
         pairs.extend([("from", point(ends[0], unit)), ("round", list(&round.to_array(), 2, unit))]);
     } else {
-        if loose {
+        if unnamed {
             ends.sort_by(|a, b| compare_points(*a, *b));
         }
         pairs.extend([("from", point(ends[0], unit)), ("to", point(ends[1], unit))]);
     }
-    Look { loose, pairs }
+    Detail { unnamed, pairs }
 }
 
 fn of_shell(cx: &mut Cx, shell: &ShellValue) -> Result<Moments, Halt> {
@@ -224,11 +224,11 @@ fn of_mesh(mesh: &Mesh, unit: &str) -> Pairs {
 fn of_set(mesh: &Mesh, group: &Group, name: &str, unit: &str, declared: bool) -> Line {
     let places = group.nodes.iter().map(|n| mesh.nodes[*n as usize]);
     let elements = group.lines.len() + group.triangles.len() + group.quads.len();
-    let made: Growing = line("set", &format!("{name} {}", group.name)).count("nodes", group.nodes.len()).count("elements", elements);
+    let made: LineBuilder = line("set", &format!("{name} {}", group.name)).count("nodes", group.nodes.len()).count("elements", elements);
     let mut made = made.all(of_mass(&Moments::of_points(places.clone()), unit)).all(of_box(Box3::of(places), unit).into_iter().collect());
     if group.dimension() == 2 {
         let (side, _) = sides(mesh, group.triangles.iter().copied(), group.quads.iter().copied(), DVec3::ZERO);
         made = made.put("side", list(&side.to_array(), 2, unit));
     }
-    made.loose(!declared).0
+    made.unnamed(!declared).0
 }
