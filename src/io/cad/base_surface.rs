@@ -10,7 +10,7 @@ use crate::geometry::shapes::nurbs::projected;
 use crate::geometry::{Curve, Motion};
 use crate::io::cad::control_nets::ruled_net;
 use crate::io::cad::curves::{check_reach, transformed, transformed_pole};
-use crate::io::cad::damage::{Damage, damage};
+use crate::io::cad::defect::{Defect, defect};
 use crate::io::cad::face_loops::FaceLoops;
 use crate::network::Chain;
 use crate::surface::core::plane;
@@ -82,24 +82,24 @@ fn even(curve: &Curve) -> bool {
 
 impl Base {
     /// A sphere about a point of an axis; u is the angle from `reference`, v the latitude.
-    pub fn sphere(axis: &Axis, radius: f64, reference: DVec3, origin: Origin) -> Result<Self, Damage> {
+    pub fn sphere(axis: &Axis, radius: f64, reference: DVec3, origin: Origin) -> Result<Self, Defect> {
         let across = axis.direction.cross(reference);
         let start = axis.about - axis.direction * radius;
         Ok(Self::Round { axis: *axis, profile: build::arc_center(axis.about, start, std::f64::consts::PI, -across, origin)? })
     }
 
     /// A torus about an axis; u is the angle from `reference`, v that of the tube from its outermost circle upwards.
-    pub fn torus(axis: &Axis, radii: [f64; 2], reference: DVec3, origin: Origin) -> Result<Self, Damage> {
+    pub fn torus(axis: &Axis, radii: [f64; 2], reference: DVec3, origin: Origin) -> Result<Self, Defect> {
         let center = axis.about + reference * radii[0];
         let start = center + reference * radii[1];
         Ok(Self::Round { axis: *axis, profile: build::circle_start(center, start, -axis.direction.cross(reference), origin)? })
     }
 
     /// The surface value; one without ends reaches a little beyond the box.
-    pub fn surface(&self, reach: &Box3, origin: Origin, tolerance: &Tolerance) -> Result<Surface, Damage> {
+    pub fn surface(&self, reach: &Box3, origin: Origin, tolerance: &Tolerance) -> Result<Surface, Defect> {
         if let Base::Plane(at, u, v) = self {
             if reach.is_empty() {
-                return Err(damage("it is a plane without a border"));
+                return Err(defect("it is a plane without a border"));
             }
             return Ok(plane::unbounded(*at, u.cross(*v), origin)?);
         }
@@ -117,13 +117,13 @@ impl Base {
         let first = net.poles[0];
         let flat = net.poles.iter().all(|q| projected(*q).distance(projected(first)) <= tolerance.rounding);
         if flat {
-            return Err(damage("all its control points coincide"));
+            return Err(defect("all its control points coincide"));
         }
         Ok(net.surface(SurfaceKind::Nurbs, origin, tolerance))
     }
 
     /// Transformed by a matrix; a turned surface by one that distorts becomes a net.
-    pub fn transformed(self, m: &DAffine3, tolerance: &Tolerance) -> Result<Self, Damage> {
+    pub fn transformed(self, m: &DAffine3, tolerance: &Tolerance) -> Result<Self, Defect> {
         let point = |p: DVec3| m.transform_point3(p);
         let turns = |v: DVec3| m.transform_vector3(v).normalize_or_zero();
         // A mirror turns the sense of a rotation.
@@ -139,7 +139,7 @@ impl Base {
                 let slope = slope * sense;
                 Self::Unbounded { axis: moved(&axis), radius, slope, reference: turns(reference) }
             }
-            Self::Unbounded { .. } => return Err(damage("its matrix distorts it")),
+            Self::Unbounded { .. } => return Err(defect("its matrix distorts it")),
             Self::Turned { .. } => {
                 let net = self.net(&Box3::EMPTY, tolerance)?;
                 Self::Net(transformed_net(net, m), [f64::NAN; 4])
@@ -176,10 +176,10 @@ impl Base {
     }
 
     /// The exact net over 0…1; a ruled surface by parameters.
-    pub fn net(&self, reach: &Box3, tolerance: &Tolerance) -> Result<NurbsSurface, Damage> {
+    pub fn net(&self, reach: &Box3, tolerance: &Tolerance) -> Result<NurbsSurface, Defect> {
         match self {
             Self::Net(net, _) => Ok(net.clone()),
-            Self::Plane(..) => Err(damage("it is a plane without a border")),
+            Self::Plane(..) => Err(defect("it is a plane without a border")),
             Self::Turned { axis, profile, angles, .. } => {
                 let turn = Motion::rotation(axis.about, axis.direction, angles.0);
                 let profile = profile.moved(&turn).to_nurbs(tolerance)?;
@@ -190,13 +190,13 @@ impl Base {
             Self::Ruled { rails: [a, b], .. } => Ok(ruled_net(&a.to_nurbs(tolerance)?, &b.to_nurbs(tolerance)?)),
             Self::Unbounded { axis, .. } => match self.whole_turn(reach, Origin::NONE)? {
                 Some((profile, _)) => Ok(revolve::net(&profile.to_nurbs(tolerance)?, axis, std::f64::consts::TAU)),
-                None => Err(damage("it is infinite")),
+                None => Err(defect("it is infinite")),
             },
         }
     }
 
     /// A curve that is turned or carried along, where that makes a surface: its bounds and its parameters are better than those of a net.
-    fn moved_curve(&self, reach: &Box3, origin: Origin, tolerance: &Tolerance) -> Result<Option<Surface>, Damage> {
+    fn moved_curve(&self, reach: &Box3, origin: Origin, tolerance: &Tolerance) -> Result<Option<Surface>, Defect> {
         let whole = self.whole_turn(reach, origin)?;
         let (profile, axis, (from, to)) = match (self, &whole) {
             (_, Some((profile, axis))) => (profile, axis, (0.0, std::f64::consts::TAU)),
@@ -217,7 +217,7 @@ impl Base {
     }
 
     /// A cylinder or cone as a whole turn of a line that reaches a little beyond the box.
-    fn whole_turn(&self, reach: &Box3, origin: Origin) -> Result<Option<(Curve, Axis)>, Damage> {
+    fn whole_turn(&self, reach: &Box3, origin: Origin) -> Result<Option<(Curve, Axis)>, Defect> {
         let Self::Unbounded { axis, radius, slope, reference } = self else { return Ok(None) };
         let (low, high) = along(axis, reach)?;
         // A cone ends at its apex.
@@ -301,9 +301,9 @@ fn transformed_net(net: NurbsSurface, m: &DAffine3) -> NurbsSurface {
 pub const BEYOND: f64 = 0.1;
 
 /// Stretch of an axis beside a box, with room around.
-fn along(axis: &Axis, reach: &Box3) -> Result<(f64, f64), Damage> {
+fn along(axis: &Axis, reach: &Box3) -> Result<(f64, f64), Defect> {
     if reach.is_empty() {
-        return Err(damage("it is a cylinder or cone without ends"));
+        return Err(defect("it is a cylinder or cone without ends"));
     }
     let room = BEYOND * reach.diagonal();
     let (low, high) = reach.stretch(axis.about, axis.direction);

@@ -11,7 +11,7 @@ use crate::base::tolerance::Tolerance;
 use crate::geometry::curves::curve::Shape;
 use crate::geometry::{Curve, Kind};
 use crate::io::cad::curve_on_surface::fitted;
-use crate::io::cad::damage::{Damage, damage};
+use crate::io::cad::defect::{Defect, defect};
 use crate::io::cad::degenerate_edges::Placed;
 use crate::io::cad::elementary_surface::{self, Ground};
 use crate::model::body::BodyLoop;
@@ -70,17 +70,17 @@ pub struct SolidSkins {
 
 impl Faces {
     /// The faces as files have them; fails where there is none, where their edges do not close, and for a plane without a border.
-    pub fn bodies(&self, tolerance: &Tolerance) -> Result<Bodies<'_>, Damage> {
+    pub fn bodies(&self, tolerance: &Tolerance) -> Result<Bodies<'_>, Defect> {
         let body = self.model.body(&self.shell, &self.network, tolerance)?;
         if body.faces.is_empty() {
-            return Err(damage("it is thinner than the gluing distance, so it has no face"));
+            return Err(defect("it is thinner than the gluing distance, so it has no face"));
         }
         let grounds = par::try_map(body.faces.len(), |k| self.ground(&body.faces[k], tolerance))?;
         let placed = Placed::new(&body, &grounds, tolerance);
         let curves = self.curves(&body, &placed, tolerance)?;
         let is_open = |face: &BodyFace| face.loops.is_empty() || face.loops.iter().any(|around| !body.is_closed(around));
         if body.faces.iter().any(is_open) {
-            return Err(damage("the edges round one of its faces do not close"));
+            return Err(defect("the edges round one of its faces do not close"));
         }
         let off = grounds.iter().fold((0.0_f64, false), |off, ground| match ground {
             Ground::Net(_, own, _) => (off.0.max(own.distance()), off.1 || matches!(own, Off::Sampled(_))),
@@ -94,14 +94,14 @@ impl Faces {
         Ok(Bodies { faces: self, grounds, vertices: placed.vertices, curves, off, thin, thin_area, body })
     }
 
-    fn ground(&self, face: &BodyFace, tolerance: &Tolerance) -> Result<Ground, Damage> {
+    fn ground(&self, face: &BodyFace, tolerance: &Tolerance) -> Result<Ground, Defect> {
         let surface = &self.model.surfaces[face.surface.index()].surface;
         let found = elementary_surface::ground(surface, &self.model.patches[face.patch.index()], tolerance)?;
-        found.ok_or_else(|| damage("a plane without a border is not a face"))
+        found.ok_or_else(|| defect("a plane without a border is not a face"))
     }
 
     /// The curves of the edges that some face uses.
-    fn curves(&self, body: &Body, placed: &Placed, tolerance: &Tolerance) -> Result<Vec<Option<Curve>>, Damage> {
+    fn curves(&self, body: &Body, placed: &Placed, tolerance: &Tolerance) -> Result<Vec<Option<Curve>>, Defect> {
         let mut used = vec![false; body.edges.len()];
         body.faces.iter().flat_map(|face| &face.loops).flatten().for_each(|(edge, _)| used[*edge] = true);
         let curve = |k: usize| placed.curve(k, body.edges[k].ends, self.curve(body, &body.edges[k], tolerance)?, tolerance);
@@ -109,7 +109,7 @@ impl Faces {
     }
 
     /// The curve of an edge: the model's where it has one, else a spline within the tolerance of the line on the surface.
-    fn curve(&self, body: &Body, edge: &BodyEdge, tolerance: &Tolerance) -> Result<Curve, Damage> {
+    fn curve(&self, body: &Body, edge: &BodyEdge, tolerance: &Tolerance) -> Result<Curve, Defect> {
         let Self { model, network, .. } = self;
         let ends = (body.vertices[edge.ends.0], body.vertices[edge.ends.1]);
         if let Some(patch) = edge.seam

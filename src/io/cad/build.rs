@@ -5,7 +5,7 @@ use crate::base::origin::Origin;
 use crate::base::text::decimals;
 use crate::base::tolerance::{MOST_REPAIR, Tolerance};
 use crate::io::cad::border::{Border, reach};
-use crate::io::cad::damage::{Damage, damage};
+use crate::io::cad::defect::{Defect, defect};
 use crate::io::cad::face::{Face, least_area};
 use crate::io::cad::healing::{Repair, Rule};
 use crate::io::cad::part::{Figure, Part, Unusable};
@@ -15,10 +15,10 @@ use crate::network::Chain;
 use crate::surface::{Doubt, Ground, Outlined, Side, Surface, outlined, trim};
 
 /// Share of the area below which a bound on what is missing says nothing.
-const WORTH_TELLING: f64 = 0.005;
+const WORTH_STATING: f64 = 0.005;
 
 /// The surface values of a face.
-pub struct Made {
+pub struct FaceSurfaces {
     /// One for each outer loop.
     pub surfaces: Vec<Surface>,
     /// Where its loops do not agree which side is the face.
@@ -31,21 +31,21 @@ impl Part {
     /// Makes [`Part::built`] of the faces, and [`Part::unusable`] of those that fail; says where the file states other figures of them.
     pub fn build(&mut self, origin: Origin, tolerance: &Tolerance) -> Vec<Malformed> {
         self.built = Vec::with_capacity(self.surfaces.len());
-        let mut said = Vec::new();
+        let mut warnings = Vec::new();
         for (k, item) in self.surfaces.iter().enumerate() {
             job::poll();
             self.built.push(match item.value.surfaces(origin, tolerance) {
-                Ok(Made { surfaces, doubts, by_accuracy }) => {
+                Ok(FaceSurfaces { surfaces, doubts, by_accuracy }) => {
                     if by_accuracy {
                         let entity = format!("{} at {}{}", item.name, self.mark, item.id);
                         let (distance, place) = (item.value.slack, item.value.off.place);
                         self.repairs.push(Repair { rule: Rule::Accuracy, face: k, entity, line: item.line, distance, place });
                     }
                     let words = |doubt: &Doubt| format!("{} at {}{}: {}", item.name, self.mark, item.id, in_words(doubt, self.model_unit));
-                    said.extend(doubts.iter().map(|doubt| Malformed::line(item.line, words(doubt))));
+                    warnings.extend(doubts.iter().map(|doubt| Malformed::line(item.line, words(doubt))));
                     surfaces
                 }
-                Err(Damage(why)) => {
+                Err(Defect(why)) => {
                     let entity = format!("{} at {}{}", item.name, self.mark, item.id);
                     let loops: Vec<&Vec<Border>> = item.value.outer.iter().chain(&item.value.holes).collect();
                     let least_area = if item.value.outer.is_some() { least_area(&loops) } else { 0.0 };
@@ -54,8 +54,8 @@ impl Part {
                 }
             });
         }
-        said.extend(self.differences());
-        said
+        warnings.extend(self.differences());
+        warnings
     }
 
     /// Share of the area that the faces without a surface have, from 0 to 1: where the file states the area of all, else what their loops
@@ -65,7 +65,7 @@ impl Part {
             let missing: f64 = self.unusable.iter().map(|missing| missing.least_area).sum();
             let found: f64 = self.built.iter().flatten().map(measure::area).sum();
             let share = missing / (missing + found);
-            (share > WORTH_TELLING).then_some(Share::AtLeast(share))
+            (share > WORTH_STATING).then_some(Share::AtLeast(share))
         })
     }
 
@@ -84,23 +84,23 @@ impl Part {
 impl Face {
     /// The surface values, one for each outer loop, and where the loops do not agree which side is the face; borders may be as far off as
     /// the file has them: as they were found to be, else what it says that may lie between two points that are one.
-    pub fn surfaces(&self, origin: Origin, tolerance: &Tolerance) -> Result<Made, Damage> {
+    pub fn surfaces(&self, origin: Origin, tolerance: &Tolerance) -> Result<FaceSurfaces, Defect> {
         if let Some(why) = self.beyond_repair(tolerance) {
             return Err(why);
         }
         let found = Tolerance { point: tolerance.point.max(2.0 * self.off.distance), ..*tolerance };
-        let said = Tolerance { point: self.slack, ..*tolerance };
-        let made = |(surfaces, doubts): (Vec<Surface>, Vec<Doubt>), by_accuracy: bool| Made { surfaces, doubts, by_accuracy };
+        let stated = Tolerance { point: self.slack, ..*tolerance };
+        let made = |(surfaces, doubts): (Vec<Surface>, Vec<Doubt>), by_accuracy: bool| FaceSurfaces { surfaces, doubts, by_accuracy };
         let why = match self.within(origin, &found) {
             Ok(all) => return Ok(made(all, false)),
             Err(why) => why,
         };
-        let again = if said.point > found.point { self.within(origin, &said).ok() } else { None };
+        let again = if stated.point > found.point { self.within(origin, &stated).ok() } else { None };
         again.map(|all| made(all, true)).ok_or(why)
     }
 
     /// Why its borders are no borders of its surface: they are off by too large a share of their size.
-    fn beyond_repair(&self, tolerance: &Tolerance) -> Option<Damage> {
+    fn beyond_repair(&self, tolerance: &Tolerance) -> Option<Defect> {
         if self.off.distance <= tolerance.point {
             return None;
         }
@@ -110,10 +110,10 @@ impl Face {
             Rule::Ends => format!("a gap in its border is {percent} % of its size"),
             _ => format!("its border is off its surface by {percent} % of its size"),
         };
-        (share > MOST_REPAIR).then(|| damage(why))
+        (share > MOST_REPAIR).then(|| defect(why))
     }
 
-    fn within(&self, origin: Origin, tolerance: &Tolerance) -> Result<(Vec<Surface>, Vec<Doubt>), Damage> {
+    fn within(&self, origin: Origin, tolerance: &Tolerance) -> Result<(Vec<Surface>, Vec<Doubt>), Defect> {
         if self.outer.is_none() && self.holes.is_empty() {
             let all = std::iter::once(&self.base).chain(&self.also);
             return Ok((all.map(|surface| self.turned(surface.clone())).collect(), Vec::new()));

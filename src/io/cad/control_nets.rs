@@ -10,11 +10,11 @@ use crate::base::tolerance::Tolerance;
 use crate::geometry::curves::curve::Shape;
 use crate::geometry::shapes::nurbs::{projected, weighted};
 use crate::geometry::{Curve, Kind, Nurbs};
-use crate::io::cad::damage::{Damage, damage};
+use crate::io::cad::defect::{Defect, defect};
 use crate::surface::NurbsSurface;
 
 /// The part of a surface over first and last u, first and last v, with full end knots, over 0…1.
-pub fn trimmed_net(net: NurbsSurface, [u0, u1, v0, v1]: [f64; 4]) -> Result<NurbsSurface, Damage> {
+pub fn trimmed_net(net: NurbsSurface, [u0, u1, v0, v1]: [f64; 4]) -> Result<NurbsSurface, Defect> {
     check_knots(&net.knots.0, net.counts.0, net.degree.0)?;
     check_knots(&net.knots.1, net.counts.1, net.degree.1)?;
     let NurbsSurface { degree, knots, mut poles, mut counts } = net;
@@ -132,17 +132,17 @@ fn unit(knots: &[f64]) -> Vec<f64> {
 }
 
 /// Knots that do not decrease, have a domain and keep the surface in one piece.
-fn check_knots(knots: &[f64], points: usize, degree: usize) -> Result<(), Damage> {
+fn check_knots(knots: &[f64], points: usize, degree: usize) -> Result<(), Defect> {
     if let Some(k) = knots.windows(2).position(|w| w[1] < w[0]) {
-        return Err(damage(format!("knots must not decrease: {} is followed by {}", knots[k], knots[k + 1])));
+        return Err(defect(format!("knots must not decrease: {} is followed by {}", knots[k], knots[k + 1])));
     }
     let (first, last) = (knots[degree], knots[points]);
     if first >= last {
-        return Err(damage("its knots give it no range of parameters"));
+        return Err(defect("its knots give it no range of parameters"));
     }
     let torn = knots.chunk_by(|a, b| a == b).find(|same| first < same[0] && same[0] < last && same.len() > degree);
     match torn {
-        Some(same) => Err(damage(format!("the knot {} occurs {} times, which tears the surface of degree {degree}", same[0], same.len()))),
+        Some(same) => Err(defect(format!("the knot {} occurs {} times, which tears the surface of degree {degree}", same[0], same.len()))),
         None => Ok(()),
     }
 }

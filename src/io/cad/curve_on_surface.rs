@@ -12,7 +12,7 @@ use crate::geometry::curves::curve::Shape;
 use crate::geometry::{Curve, Kind, Nurbs};
 use crate::io::cad::base_surface::Base;
 use crate::io::cad::curves::transformed;
-use crate::io::cad::damage::{Damage, damage};
+use crate::io::cad::defect::{Defect, defect};
 
 /// Steps along a smooth piece of the curve to begin with, and at most.
 const STEPS: (usize, usize) = (8, 4096);
@@ -20,7 +20,7 @@ const STEPS: (usize, usize) = (8, 4096);
 /// The curve S(u(t), v(t)): exact on planes and along lines of constant u or v of a net, else within the tolerance.
 ///
 /// `None` when it is one point.
-pub fn composed(base: &Base, uv: &Curve, tolerance: &Tolerance, origin: Origin) -> Result<Option<Curve>, Damage> {
+pub fn composed(base: &Base, uv: &Curve, tolerance: &Tolerance, origin: Origin) -> Result<Option<Curve>, Defect> {
     if let Base::Plane(at, u, v) = base {
         let m = DAffine3::from_mat3_translation(DMat3::from_cols(*u, *v, u.cross(*v)), *at);
         return Ok(Some(transformed(uv, &m, tolerance)?.with_origin(origin)));
@@ -28,7 +28,7 @@ pub fn composed(base: &Base, uv: &Curve, tolerance: &Tolerance, origin: Origin) 
     let curve = match along_line(base, uv) {
         Some(exact) => exact,
         None => {
-            let lost = || damage("its curves in (u, v) cannot be read in the parameters of this surface");
+            let lost = || defect("its curves in (u, v) cannot be read in the parameters of this surface");
             let at = |t: f64| {
                 let p = uv.point(t);
                 base.point(p.x, p.y).ok_or_else(lost)
@@ -63,16 +63,16 @@ fn along_line(base: &Base, uv: &Curve) -> Option<Nurbs> {
 pub fn fitted(
     knots: &[f64],
     tolerance: &Tolerance,
-    at: &dyn Fn(f64) -> Result<DVec3, Damage>,
+    at: &dyn Fn(f64) -> Result<DVec3, Defect>,
     shown: &dyn Fn(DVec3) -> DVec3,
-) -> Result<Nurbs, Damage> {
+) -> Result<Nurbs, Defect> {
     let mut pieces = Vec::new();
     for span in knots.windows(2) {
         let (from, width) = (span[0], span[1] - span[0]);
         let mut steps = STEPS.0;
         let piece = loop {
             let place = |k: f64| from + width * (k / steps as f64);
-            let points = (0..=steps).map(|k| at(place(k as f64))).collect::<Result<Vec<DVec3>, Damage>>()?;
+            let points = (0..=steps).map(|k| at(place(k as f64))).collect::<Result<Vec<DVec3>, Defect>>()?;
             let spans = vec![width / steps as f64; steps];
             let slopes = open_slopes(&points, &spans, end_slopes(&points, width / steps as f64));
             let fit = through(&points, &spans, &slopes);

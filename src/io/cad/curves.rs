@@ -11,22 +11,22 @@ use crate::geometry::curves::curve::Shape;
 use crate::geometry::shapes::arc::EllipticArc;
 use crate::geometry::shapes::nurbs::projected;
 use crate::geometry::{Curve, Kind, Nurbs};
-use crate::io::cad::damage::{Damage, damage};
+use crate::io::cad::defect::{Defect, defect};
 
 /// Coordinates must leave room for what is computed from them.
-pub fn check_reach(points: impl IntoIterator<Item = DVec3>) -> Result<(), Damage> {
+pub fn check_reach(points: impl IntoIterator<Item = DVec3>) -> Result<(), Defect> {
     let fits = |p: DVec3| p.abs().max_element() <= limits::COORDINATE && !p.is_nan();
-    if points.into_iter().all(fits) { Ok(()) } else { Err(damage("its coordinates are too large")) }
+    if points.into_iter().all(fits) { Ok(()) } else { Err(defect("its coordinates are too large")) }
 }
 
 /// Weights must be above 0, and not too different to be added.
-pub fn check_weights(weights: &[f64]) -> Result<(), Damage> {
+pub fn check_weights(weights: &[f64]) -> Result<(), Defect> {
     if let Some(k) = weights.iter().position(|w| *w <= 0.0) {
-        return Err(damage(format!("weight {} is {}; weights must be above 0", k + 1, weights[k])));
+        return Err(defect(format!("weight {} is {}; weights must be above 0", k + 1, weights[k])));
     }
     let (least, largest) = weights.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), w| (a.min(*w), b.max(*w)));
     if largest > limits::COORDINATE || least < 1.0 / limits::COORDINATE {
-        return Err(damage(format!("its weights from {least:e} to {largest:e} cannot be added")));
+        return Err(defect(format!("its weights from {least:e} to {largest:e} cannot be added")));
     }
     Ok(())
 }
@@ -63,7 +63,7 @@ pub fn weight(curve: &Curve) -> usize {
 }
 
 /// The curve transformed by any affine map, exactly; an offset within the tolerance.
-pub fn transformed(curve: &Curve, m: &DAffine3, tolerance: &Tolerance) -> Result<Curve, Damage> {
+pub fn transformed(curve: &Curve, m: &DAffine3, tolerance: &Tolerance) -> Result<Curve, Defect> {
     let origin = curve.origin();
     Ok(match curve.shape() {
         Shape::Line(a, b) => Curve::new(Shape::Line(m.transform_point3(*a), m.transform_point3(*b)), curve.kind(), origin),
@@ -74,7 +74,7 @@ pub fn transformed(curve: &Curve, m: &DAffine3, tolerance: &Tolerance) -> Result
             Curve::new(Shape::Arc(moved), kind, origin)
         }
         Shape::Composite(c) => {
-            let pieces: Result<Vec<Curve>, Damage> = c.pieces.iter().map(|piece| transformed(piece, m, tolerance)).collect();
+            let pieces: Result<Vec<Curve>, Defect> = c.pieces.iter().map(|piece| transformed(piece, m, tolerance)).collect();
             Curve::new(Shape::Composite(Arc::new(Composite::new(pieces?))), curve.kind(), origin)
         }
         Shape::Nurbs(c) => from_nurbs(c, m, curve),

@@ -7,7 +7,7 @@ use crate::geometry::Curve;
 use crate::geometry::closest;
 use crate::geometry::shapes::nurbs::weighted;
 use crate::io::cad::control_nets::{borders, spline};
-use crate::io::cad::damage::Damage;
+use crate::io::cad::defect::Defect;
 use crate::io::cad::elementary_surface::Ground;
 use crate::model::Body;
 
@@ -56,7 +56,7 @@ impl Placed {
     }
 
     /// The curve of an edge between these vertices.
-    pub fn curve(&self, edge: usize, ends: (usize, usize), own: Curve, tolerance: &Tolerance) -> Result<Curve, Damage> {
+    pub fn curve(&self, edge: usize, ends: (usize, usize), own: Curve, tolerance: &Tolerance) -> Result<Curve, Defect> {
         let (start, end) = (self.vertices[ends.0], self.vertices[ends.1]);
         let (a, b) = own.domain();
         let places: Vec<DVec3> = (1..PLACES).map(|k| own.point(a + (b - a) * k as f64 / PLACES as f64)).collect();

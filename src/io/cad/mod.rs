@@ -10,7 +10,7 @@ mod build;
 pub mod control_nets;
 pub mod curve_on_surface;
 pub mod curves;
-pub mod damage;
+pub mod defect;
 mod degenerate_edges;
 pub mod elementary_surface;
 pub mod face;

@@ -4,7 +4,7 @@ use crate::base::bbox::Box3;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::io::cad::base_surface::Base;
-use crate::io::cad::damage::{Damage, damage};
+use crate::io::cad::defect::{Defect, defect};
 use crate::surface::{Surface, offset};
 
 /// Share of the tolerance that an offset may be off: its areas are to be found again.
@@ -15,9 +15,9 @@ impl Base {
     /// back over itself somewhere. Model units.
     ///
     /// Fails where the surface has creases or tips, or where nothing is left of it.
-    pub fn beside(self, distance: f64, reach: &Box3, origin: Origin, tolerance: &Tolerance) -> Result<(Self, bool), Damage> {
+    pub fn beside(self, distance: f64, reach: &Box3, origin: Origin, tolerance: &Tolerance) -> Result<(Self, bool), Defect> {
         if !distance.is_finite() {
-            return Err(damage("its distance is not a number"));
+            return Err(defect("its distance is not a number"));
         }
         let fine = Tolerance { point: FINE * tolerance.point, ..*tolerance };
         let (range, surface) = match &self {
@@ -26,7 +26,7 @@ impl Base {
             Self::Unbounded { axis, radius, slope, reference } => {
                 let radius = radius + distance * (1.0 + slope * slope).sqrt();
                 if radius <= 0.0 && *slope == 0.0 {
-                    return Err(damage("its offset turns it inside out"));
+                    return Err(defect("its offset turns it inside out"));
                 }
                 return Ok((Self::Unbounded { axis: *axis, radius, slope: *slope, reference: *reference }, false));
             }
@@ -36,13 +36,13 @@ impl Base {
         let (made, folds) = offset(&surface, distance, origin, &fine)?;
         let net = match made.swept_net((0.0, 1.0), &fine) {
             Some(net) => net,
-            None => made.to_net(&fine)?.ok_or_else(|| damage("its offset has no net"))?.net,
+            None => made.to_net(&fine)?.ok_or_else(|| defect("its offset has no net"))?.net,
         };
         Ok((Self::Net(net, range), !folds.is_empty()))
     }
 
     /// The unit normal of its surface value in the middle of its parameters; zero where there is none.
-    pub fn upright(&self, reach: &Box3, origin: Origin, tolerance: &Tolerance) -> Result<glam::DVec3, Damage> {
+    pub fn upright(&self, reach: &Box3, origin: Origin, tolerance: &Tolerance) -> Result<glam::DVec3, Defect> {
         match self {
             Self::Plane(_, u, v) => Ok(u.cross(*v)),
             Self::Unbounded { reference, .. } => Ok(-*reference),

@@ -21,7 +21,7 @@ use crate::geometry::curves::curve::Shape;
 use crate::geometry::query::intersect::{Hit, intersect};
 use crate::geometry::{Curve, Kind, Motion};
 use crate::io::cad::base_surface::Base;
-use crate::io::cad::damage::{Damage, damage};
+use crate::io::cad::defect::{Defect, defect};
 use crate::io::cad::face_loops::FaceLoops;
 use crate::surface::swept::revolve::Axis;
 
@@ -42,7 +42,7 @@ pub struct Clear {
 
 impl Base {
     /// The same surface, of a profile that crosses its axis the part that is meant; `slack` is what may lie between two points that are one.
-    pub fn clear_of_axis(self, loops: &FaceLoops, slack: f64, tolerance: &Tolerance) -> Result<Clear, Damage> {
+    pub fn clear_of_axis(self, loops: &FaceLoops, slack: f64, tolerance: &Tolerance) -> Result<Clear, Defect> {
         let sure = |base: Self| Clear { base, also: Vec::new(), doubt: None };
         let (profile, axis, angles) = match &self {
             Self::Turned { profile, axis, angles, .. } => (profile, *axis, *angles),
@@ -56,7 +56,7 @@ impl Base {
             _ => Self::Turned { axis, profile, angles, first: None },
         };
         match parts.len() {
-            0 => Err(damage("its profile lies in its axis")),
+            0 => Err(defect("its profile lies in its axis")),
             1 => Ok(sure(of(parts.remove(0)))),
             _ => {
                 let is_closed = profile.is_closed(tolerance);
@@ -69,7 +69,7 @@ impl Base {
     }
 
     /// A cone on the side of its apex where the loops are.
-    fn on_one_side(self, loops: &FaceLoops, slack: f64) -> Result<Self, Damage> {
+    fn on_one_side(self, loops: &FaceLoops, slack: f64) -> Result<Self, Defect> {
         let Self::Unbounded { axis, radius, slope, reference } = self else { return Ok(self) };
         // Radii above 0 at heights where the file has them, below 0 beyond the apex.
         let radius_at = |p: DVec3| radius + slope * (p - axis.about).dot(axis.direction);
@@ -80,7 +80,7 @@ impl Base {
             beyond |= radius_at(p) < -room;
         }
         match (before, beyond) {
-            (true, true) => Err(damage("its loops lie on both sides of its apex")),
+            (true, true) => Err(defect("its loops lie on both sides of its apex")),
             (false, true) => Ok(Self::Unbounded { axis, radius: -radius, slope: -slope, reference: -reference }),
             _ => Ok(Self::Unbounded { axis, radius, slope, reference }),
         }
@@ -88,7 +88,7 @@ impl Base {
 }
 
 /// The parts into which an axis cuts a curve, those in the axis left out; `None` for one that only its ends may touch.
-fn parts(curve: &Curve, axis: &Axis, tolerance: &Tolerance) -> Result<Option<Vec<Curve>>, Damage> {
+fn parts(curve: &Curve, axis: &Axis, tolerance: &Tolerance) -> Result<Option<Vec<Curve>>, Defect> {
     let bounds = curve.bbox();
     let middle = axis.direction.dot(bounds.center() - axis.about);
     let reach = 2.0 * bounds.diagonal().max(tolerance.point);
@@ -196,10 +196,10 @@ impl Turned {
 }
 
 /// The part that is meant, or all that are, and why another could be as well.
-fn chosen(parts: Vec<Turned>, axis: &Axis, is_closed: bool, loops: &FaceLoops, slack: f64) -> Result<(Vec<Curve>, Option<String>), Damage> {
+fn chosen(parts: Vec<Turned>, axis: &Axis, is_closed: bool, loops: &FaceLoops, slack: f64) -> Result<(Vec<Curve>, Option<String>), Defect> {
     let count = parts.len();
     if parts.iter().any(|part| part.off_plane() > slack) {
-        return Err(damage(format!("its axis cuts its profile into {count} parts that do not lie in one plane with it")));
+        return Err(defect(format!("its axis cuts its profile into {count} parts that do not lie in one plane with it")));
     }
     let points: Vec<DVec3> = loops.points().collect();
     let off = |part: &Turned| points.iter().map(|p| part.distance(*p)).fold(0.0, f64::max);
@@ -207,7 +207,7 @@ fn chosen(parts: Vec<Turned>, axis: &Axis, is_closed: bool, loops: &FaceLoops, s
     let least = offs.iter().copied().fold(f64::INFINITY, f64::min);
     let on_any = |p: &DVec3| parts.iter().any(|part| part.distance(*p) <= slack);
     if least > NEAR_MISS * slack && points.iter().all(on_any) {
-        return Err(damage(format!("its loops lie on several of the {count} parts into which its axis cuts its profile")));
+        return Err(defect(format!("its loops lie on several of the {count} parts into which its axis cuts its profile")));
     }
     let mut meant: Vec<&Turned> = parts.iter().zip(&offs).filter(|(_, off)| **off <= least + slack).map(|(part, _)| part).collect();
     for vertex in loops.vertices {
@@ -221,7 +221,7 @@ fn chosen(parts: Vec<Turned>, axis: &Axis, is_closed: bool, loops: &FaceLoops, s
     let runs_up = |part: &Turned| (part.part.end() - part.part.start()).dot(axis.direction) > 0.0;
     // Of equals the first.
     let Some(best) = meant.iter().rev().max_by_key(|part| (beside(part), runs_up(part))) else {
-        return Err(damage("its profile has no parts"));
+        return Err(defect("its profile has no parts"));
     };
     if meant.iter().all(|part| part.is_same(best, slack)) {
         // Of a closed surface the side of a loop that goes round the axis follows from the normal, and that of each half is the other way.
@@ -236,7 +236,7 @@ fn chosen(parts: Vec<Turned>, axis: &Axis, is_closed: bool, loops: &FaceLoops, s
         return Ok((vec![best.part.clone()], doubt));
     }
     if !points.is_empty() {
-        return Err(damage(format!("its axis cuts its profile into {count} parts, and it is ambiguous which is meant")));
+        return Err(defect(format!("its axis cuts its profile into {count} parts, and it is ambiguous which is meant")));
     }
     if is_closed && !loops.vertices.is_empty() {
         let doubt = format!(

@@ -20,9 +20,9 @@ impl Part {
         let faces = || surfaces.iter().map(|s| (s.clone(), false)).collect::<Vec<(Surface, bool)>>();
         let compared = |word: &str, found: f64, given: f64, unit: &str| {
             let off = (found - given) / given;
-            let said =
+            let difference =
                 format!("{}: its {word} is {found:.6} {unit}, the file states {given:.6} {unit} ({:+.2} %)", stated.name, 100.0 * off);
-            (off.is_nan() || off.abs() > STATED).then(|| Malformed::line(stated.line, said))
+            (off.is_nan() || off.abs() > STATED).then(|| Malformed::line(stated.line, difference))
         };
         let copies = stated.copies.max(1) as f64;
         match stated.figure {
@@ -36,8 +36,8 @@ impl Part {
                 let size = surfaces.iter().map(Surface::hull).fold(Box3::EMPTY, Box3::union).diagonal();
                 let off = measure::solid(&faces()).centroid.distance(given);
                 let of_faces = measure::sheet(&surfaces).centroid.distance(given);
-                let said = format!("{}: its centroid is {off:.6} {} from where the file states it", stated.name, self.model_unit);
-                (off.min(of_faces) > STATED * size).then(|| Malformed::line(stated.line, said))
+                let difference = format!("{}: its centroid is {off:.6} {} from where the file states it", stated.name, self.model_unit);
+                (off.min(of_faces) > STATED * size).then(|| Malformed::line(stated.line, difference))
             }
         }
     }

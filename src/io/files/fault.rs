@@ -316,7 +316,7 @@ impl FileFault {
 }
 
 /// Unusable faces that are named on a screen.
-const FACES_TOLD: usize = 10;
+const FACES_LISTED: usize = 10;
 
 /// W726: how many faces are missing, how much that is, and a line for each.
 fn unusable(of: Origin, path: &str, total: usize, faces: &[Malformed], share: Option<Share>, whole: bool) -> Report {
@@ -327,9 +327,9 @@ fn unusable(of: Origin, path: &str, total: usize, faces: &[Malformed], share: Op
         None => "their share of the area is unknown".to_owned(),
     };
     let report = Report::new("W726", format!("{count} of \"{path}\" could not be used ({share})")).at(of, "imported here");
-    let told = if whole { faces.len() } else { faces.len().min(FACES_TOLD) };
-    let report = faces.iter().take(told).fold(report, |r, face| r.note(format!("line {}: {}", face.line, face.what)));
-    match faces.len() - told {
+    let listed = if whole { faces.len() } else { faces.len().min(FACES_LISTED) };
+    let report = faces.iter().take(listed).fold(report, |r, face| r.note(format!("line {}: {}", face.line, face.what)));
+    match faces.len() - listed {
         0 => report,
         more => report.note(format!("and {more} more, which `loft explain` lists with the name of the part")),
     }

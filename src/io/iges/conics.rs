@@ -11,7 +11,7 @@ use crate::geometry::curves::curve::Shape;
 use crate::geometry::shapes::arc::EllipticArc;
 use crate::geometry::shapes::nurbs::weighted;
 use crate::geometry::{Curve, Kind, Nurbs};
-use crate::io::cad::damage::{Damage, damage};
+use crate::io::cad::defect::{Defect, defect};
 use crate::io::iges::entity_data::Conic;
 
 const TURN: f64 = std::f64::consts::TAU;
@@ -37,11 +37,11 @@ impl Level {
 pub type Missed = (Curve, f64);
 
 /// The arc round `center` from `start` counter-clockwise to `end`; the whole circle when they are one point.
-pub fn arc(level: &Level, [center, start, end]: [DVec2; 3]) -> Result<Missed, Damage> {
+pub fn arc(level: &Level, [center, start, end]: [DVec2; 3]) -> Result<Missed, Defect> {
     let (u, e) = (start - center, end - center);
     let radius = u.length();
     if radius <= EPSILON * center.length() || radius == 0.0 {
-        return Err(damage("its radius is 0"));
+        return Err(defect("its radius is 0"));
     }
     let sweep = swept(math::atan2(u.perp_dot(e), u.dot(e)), start.distance(end) <= level.same);
     let v = u.perp();
@@ -62,10 +62,10 @@ fn swept(angle: f64, closed: bool) -> f64 {
 }
 
 /// The conic section through two points of it: an ellipse counter-clockwise, else the branch between them.
-pub fn conic(level: &Level, coefficients: &Conic, [start, end]: [DVec2; 2]) -> Result<Missed, Damage> {
+pub fn conic(level: &Level, coefficients: &Conic, [start, end]: [DVec2; 2]) -> Result<Missed, Defect> {
     let size = coefficients[..3].iter().fold(0.0_f64, |m, c| m.max(c.abs()));
     if size == 0.0 {
-        return Err(damage("its equation has no square term"));
+        return Err(defect("its equation has no square term"));
     }
     // An ellipse's x² counts as positive.
     let sign = if coefficients[0] + coefficients[2] < 0.0 { -size } else { size };
@@ -87,13 +87,13 @@ pub fn conic(level: &Level, coefficients: &Conic, [start, end]: [DVec2; 2]) -> R
 }
 
 /// center + p cos θ + v sin θ with conjugate half-diameters p and v: pᵀQv = 0.
-fn ellipse(level: &Level, center: DVec2, q: impl Fn(DVec2) -> DVec2, [start, end]: [DVec2; 2]) -> Result<Curve, Damage> {
+fn ellipse(level: &Level, center: DVec2, q: impl Fn(DVec2) -> DVec2, [start, end]: [DVec2; 2]) -> Result<Curve, Defect> {
     let p = start - center;
     let k = p.dot(q(p));
     let across = q(p).perp();
     let spread = across.dot(q(across));
     if !(k > 0.0 && spread > 0.0) {
-        return Err(damage("its first point is not on an ellipse"));
+        return Err(defect("its first point is not on an ellipse"));
     }
     let v = across * (k / spread).sqrt();
     let e = end - center;
@@ -105,19 +105,19 @@ fn ellipse(level: &Level, center: DVec2, q: impl Fn(DVec2) -> DVec2, [start, end
 /// The rational quadratic piece between two points of a hyperbola or parabola, from its equation XᵀMX = 0.
 ///
 /// The middle pole is where the tangents M·X₀ and M·X₂ meet; putting the piece into the equation gives w² = −X₀ᵀMX₂ / 2X₁ᵀMX₁.
-fn branch(level: &Level, form: &DMat3, [start, end]: [DVec2; 2]) -> Result<Curve, Damage> {
+fn branch(level: &Level, form: &DMat3, [start, end]: [DVec2; 2]) -> Result<Curve, Defect> {
     if start == end {
-        return Err(damage("its ends coincide"));
+        return Err(defect("its ends coincide"));
     }
     let (x0, x2) = (start.extend(1.0), end.extend(1.0));
     let meet = (*form * x0).cross(*form * x2);
     if meet.z.abs() <= EPSILON * meet.length() {
-        return Err(damage("its end tangents do not meet"));
+        return Err(defect("its end tangents do not meet"));
     }
     let x1 = meet / meet.z;
     let square = -x0.dot(*form * x2) / (2.0 * x1.dot(*form * x1));
     if !(square > 0.0 && square.is_finite()) {
-        return Err(damage("its ends are on different branches"));
+        return Err(defect("its ends are on different branches"));
     }
     let poles: Vec<DVec4> = [(x0, 1.0), (x1, square.sqrt()), (x2, 1.0)].map(|(p, w)| weighted(level.point(p.truncate()), w)).to_vec();
     Ok(Curve::new(Shape::Nurbs(Arc::new(Nurbs::bezier(0.0, 1.0, poles))), Kind::Conic, level.origin))

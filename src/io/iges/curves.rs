@@ -9,10 +9,10 @@ use crate::geometry::curves::composite::Composite;
 use crate::geometry::curves::curve::Shape;
 use crate::geometry::{Curve, Kind};
 use crate::io::cad::curves::{check_reach, check_weights, ordered, transformed, weight};
-use crate::io::cad::damage::{Damage, damage};
+use crate::io::cad::defect::{Defect, defect};
 use crate::io::iges::conics::{self, Level};
 use crate::io::iges::entity_data::{Data, Pointer, SplineData};
-use crate::io::iges::entity_table::{Book, NESTED};
+use crate::io::iges::entity_table::{EntityTable, NESTED};
 
 /// Whether a curve is wanted in space (model units) or in the (u, v) of a surface, and how deep it is nested.
 #[derive(Clone, Copy, Debug)]
@@ -34,23 +34,23 @@ impl Place {
     }
 }
 
-impl Book {
+impl EntityTable {
     /// The curve that a pointer means; made once.
-    pub fn curve(&mut self, d: Pointer, place: Place) -> Result<Curve, Damage> {
+    pub fn curve(&mut self, d: Pointer, place: Place) -> Result<Curve, Defect> {
         if let Some(made) = self.curves.get(&(d, place.in_uv)) {
             return made.clone();
         }
         if place.depth > NESTED {
-            return Err(damage("curves are nested too deep"));
+            return Err(defect("curves are nested too deep"));
         }
         // Whoever points back here on the way finds this.
-        self.curves.insert((d, place.in_uv), Err(damage(format!("{} is made of itself", self.said(d)))));
+        self.curves.insert((d, place.in_uv), Err(defect(format!("{} is made of itself", self.label(d)))));
         let made = self.make_curve(d, place);
         self.curves.insert((d, place.in_uv), made.clone());
         made
     }
 
-    fn make_curve(&mut self, d: Pointer, place: Place) -> Result<Curve, Damage> {
+    fn make_curve(&mut self, d: Pointer, place: Place) -> Result<Curve, Defect> {
         let k = self.place(d)?;
         let matrix = self.placement(self.entries[k].transform)?;
         // Taken out while it is worked on: a copy of a large spline would be memory for nothing.
@@ -69,7 +69,7 @@ impl Book {
         Ok(curve)
     }
 
-    fn curve_of(&mut self, d: Pointer, data: &Data, place: Place) -> Result<Curve, Damage> {
+    fn curve_of(&mut self, d: Pointer, data: &Data, place: Place) -> Result<Curve, Defect> {
         let scale = if place.in_uv { 1.0 } else { self.scale };
         let same = if place.in_uv { 0.0 } else { self.tolerance.point };
         let origin = self.origin;
@@ -112,9 +112,9 @@ impl Book {
                 let part = if range.0 < range.1 && range.0 < b && a < range.1 { base.part(range.0, range.1) } else { base };
                 Ok(build::offset(&part, distance * scale, *normal, origin)?)
             }
-            Data::Damaged => Err(damage(format!("{} is damaged", self.said(d)))),
-            Data::Busy => Err(damage(format!("{} is made of itself", self.said(d)))),
-            _ => Err(damage(format!("{} is not a curve", self.said(d)))),
+            Data::Damaged => Err(defect(format!("{} is damaged", self.label(d)))),
+            Data::Busy => Err(defect(format!("{} is made of itself", self.label(d)))),
+            _ => Err(defect(format!("{} is not a curve", self.label(d)))),
         }
     }
 
@@ -127,7 +127,7 @@ impl Book {
     }
 
     /// Cubic pieces as Bézier pieces; powers of t − T(i).
-    fn polynomials(&mut self, d: Pointer, breaks: &[f64], pieces: &[[[f64; 4]; 3]], scale: f64) -> Result<Curve, Damage> {
+    fn polynomials(&mut self, d: Pointer, breaks: &[f64], pieces: &[[[f64; 4]; 3]], scale: f64) -> Result<Curve, Defect> {
         let mut poles: Vec<DVec4> = Vec::with_capacity(3 * pieces.len() + 1);
         let mut knots = vec![breaks[0]; 4];
         let mut gap = 0.0_f64;
@@ -152,7 +152,7 @@ impl Book {
         Ok(Curve::new(curve.shape().clone(), Kind::Spline, self.origin))
     }
 
-    fn spline(&mut self, spline: &SplineData, scale: f64) -> Result<Curve, Damage> {
+    fn spline(&mut self, spline: &SplineData, scale: f64) -> Result<Curve, Defect> {
         let points: Vec<DVec3> = spline.points.iter().map(|p| *p * scale).collect();
         if let ([a, b], true) = (points.as_slice(), spline.weights.windows(2).all(|w| w[0] == w[1])) {
             let (first, last) = (spline.knots[1], spline.knots[2]);
@@ -165,13 +165,13 @@ impl Book {
     }
 
     /// Curves in a row; points among them say nothing, and a piece written backwards is turned.
-    fn composite(&mut self, d: Pointer, members: &[Pointer], place: Place) -> Result<Curve, Damage> {
+    fn composite(&mut self, d: Pointer, members: &[Pointer], place: Place) -> Result<Curve, Defect> {
         let mut pieces: Vec<Curve> = Vec::new();
         for member in members {
             if is_point(self.data(*member)?) {
                 continue;
             }
-            let curve = self.curve(*member, place.deeper()).map_err(|Damage(why)| damage(format!("its piece at D{member}: {why}")))?;
+            let curve = self.curve(*member, place.deeper()).map_err(|Defect(why)| defect(format!("its piece at D{member}: {why}")))?;
             self.copy(curve.composite().map_or(1, |c| c.pieces.len()))?;
             pieces.push(curve);
         }
@@ -181,7 +181,7 @@ impl Book {
             self.warn(d, format!("its pieces are {gap} apart"));
         }
         match pieces.as_slice() {
-            [] => Err(damage("it has no pieces")),
+            [] => Err(defect("it has no pieces")),
             [one] => Ok(one.clone()),
             _ => Ok(Curve::new(Shape::Composite(Arc::new(Composite::new(pieces))), Kind::Composite, self.origin)),
         }

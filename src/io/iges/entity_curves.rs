@@ -2,37 +2,37 @@
 
 use glam::DVec3;
 
-use crate::io::cad::damage::{Damage, damage};
+use crate::io::cad::defect::{Defect, defect};
 use crate::io::iges::entity_data::{Data, SplineData};
 use crate::io::iges::params::Reader;
 
 /// 100.
-pub fn arc(r: &mut Reader) -> Result<Data, Damage> {
+pub fn arc(r: &mut Reader) -> Result<Data, Defect> {
     let z = r.real("plane")?;
-    let mut pair = |what: &str| Ok::<_, Damage>([r.real(what)?, r.real(what)?]);
+    let mut pair = |what: &str| Ok::<_, Defect>([r.real(what)?, r.real(what)?]);
     Ok(Data::Arc { z, center: pair("centre")?, start: pair("start")?, end: pair("end")? })
 }
 
 /// 104.
-pub fn conic(r: &mut Reader) -> Result<Data, Damage> {
+pub fn conic(r: &mut Reader) -> Result<Data, Defect> {
     let mut conic = [0.0; 6];
     for c in &mut conic {
         *c = r.real("coefficient")?;
     }
     let z = r.real("plane")?;
-    let mut pair = |what: &str| Ok::<_, Damage>([r.real(what)?, r.real(what)?]);
+    let mut pair = |what: &str| Ok::<_, Defect>([r.real(what)?, r.real(what)?]);
     Ok(Data::ConicArc { conic, z, start: pair("start")?, end: pair("end")? })
 }
 
 /// 106: pairs in a plane, triples, or triples with a vector each.
-pub fn points(form: i32, r: &mut Reader) -> Result<Data, Damage> {
+pub fn points(form: i32, r: &mut Reader) -> Result<Data, Defect> {
     let kind = r.int("kind of rows")?;
     let n = r.count("count of points")?;
     let mut points = match kind {
         1 => {
             let z = r.real("plane")?;
             r.needs(n, 2, "points")?;
-            (0..n).map(|_| Ok(DVec3::new(r.real("x")?, r.real("y")?, z))).collect::<Result<Vec<_>, Damage>>()?
+            (0..n).map(|_| Ok(DVec3::new(r.real("x")?, r.real("y")?, z))).collect::<Result<Vec<_>, Defect>>()?
         }
         2 => r.points(n, "points")?,
         3 => {
@@ -42,9 +42,9 @@ pub fn points(form: i32, r: &mut Reader) -> Result<Data, Damage> {
                 r.point("vector")?;
                 Ok(p)
             };
-            (0..n).map(|_| with_vector()).collect::<Result<Vec<_>, Damage>>()?
+            (0..n).map(|_| with_vector()).collect::<Result<Vec<_>, Defect>>()?
         }
-        other => return Err(damage(format!("rows of points are of kind 1, 2 or 3, got {other}"))),
+        other => return Err(defect(format!("rows of points are of kind 1, 2 or 3, got {other}"))),
     };
     match form {
         1..=3 => Ok(Data::Points { points, is_line: false }),
@@ -63,13 +63,13 @@ pub fn points(form: i32, r: &mut Reader) -> Result<Data, Damage> {
 }
 
 /// 112: an end value of each coordinate and its derivatives follow the pieces; they say nothing new.
-pub fn polynomials(r: &mut Reader) -> Result<Data, Damage> {
+pub fn polynomials(r: &mut Reader) -> Result<Data, Defect> {
     r.int("kind of spline")?;
     r.int("continuity")?;
     let dimensions = r.int("count of dimensions")?;
     let n = r.count("count of pieces")?;
     if n == 0 {
-        return Err(damage("a spline of no pieces"));
+        return Err(defect("a spline of no pieces"));
     }
     r.needs(n, 13, "pieces")?;
     let breaks = r.reals(n + 1, "joints")?;
@@ -86,7 +86,7 @@ pub fn polynomials(r: &mut Reader) -> Result<Data, Damage> {
         }
         Ok(piece)
     };
-    let pieces = (0..n).map(|_| piece()).collect::<Result<Vec<_>, Damage>>()?;
+    let pieces = (0..n).map(|_| piece()).collect::<Result<Vec<_>, Defect>>()?;
     for _ in 0..r.left().min(12) {
         r.real_or(0.0);
     }
@@ -94,15 +94,15 @@ pub fn polynomials(r: &mut Reader) -> Result<Data, Damage> {
 }
 
 /// Joints must ascend.
-pub fn increasing(breaks: &[f64]) -> Result<(), Damage> {
+pub fn increasing(breaks: &[f64]) -> Result<(), Defect> {
     match breaks.windows(2).position(|w| w[1] <= w[0]) {
-        Some(k) => Err(damage(format!("the joints do not ascend: {} is followed by {}", breaks[k], breaks[k + 1]))),
+        Some(k) => Err(defect(format!("the joints do not ascend: {} is followed by {}", breaks[k], breaks[k + 1]))),
         None => Ok(()),
     }
 }
 
 /// 126.
-pub fn spline(r: &mut Reader) -> Result<Data, Damage> {
+pub fn spline(r: &mut Reader) -> Result<Data, Defect> {
     let last = r.count("last index of points")?;
     let degree = r.count("degree")?;
     for what in ["planar", "closed", "polynomial", "periodic"] {
@@ -129,19 +129,19 @@ pub fn range(r: &mut Reader, (first, last): (f64, f64)) -> (f64, f64) {
 }
 
 /// A spline of degree p has more than p points.
-pub fn check_degree(points: usize, degree: usize) -> Result<(), Damage> {
+pub fn check_degree(points: usize, degree: usize) -> Result<(), Defect> {
     const HIGHEST: usize = crate::geometry::shapes::nurbs::MAX_DEGREE;
     if degree == 0 || degree > HIGHEST {
-        return Err(damage(format!("degree {degree} is not read; degrees are 1 to {HIGHEST}")));
+        return Err(defect(format!("degree {degree} is not read; degrees are 1 to {HIGHEST}")));
     }
     if points <= degree {
-        return Err(damage(format!("degree {degree} needs {} control points, got {points}", degree + 1)));
+        return Err(defect(format!("degree {degree} needs {} control points, got {points}", degree + 1)));
     }
     Ok(())
 }
 
 /// 130 with a constant distance.
-pub fn offset(r: &mut Reader) -> Result<Data, Damage> {
+pub fn offset(r: &mut Reader) -> Result<Data, Defect> {
     let base = r.pointer("curve")?;
     let law = r.int("law of distances")?;
     r.pointer("law's curve")?;
@@ -154,7 +154,7 @@ pub fn offset(r: &mut Reader) -> Result<Data, Damage> {
     let normal = r.point("normal")?;
     let range = (r.real("first parameter")?, r.real("last parameter")?);
     if law != 1 {
-        return Err(damage("only offsets by one distance are read"));
+        return Err(defect("only offsets by one distance are read"));
     }
     Ok(Data::OffsetCurve { base, distance, normal, range })
 }

@@ -1,11 +1,11 @@
 //! Parameters of trimmed surfaces and of solids given by their borders.
 
-use crate::io::cad::damage::Damage;
+use crate::io::cad::defect::Defect;
 use crate::io::iges::entity_data::{BoundaryCurve, Data, EdgeData, LoopEdge};
 use crate::io::iges::params::Reader;
 
 /// 141.
-pub fn boundary(r: &mut Reader) -> Result<Data, Damage> {
+pub fn boundary(r: &mut Reader) -> Result<Data, Defect> {
     r.int("kind of boundary")?;
     r.int("preference")?;
     let surface = r.pointer("surface")?;
@@ -17,12 +17,12 @@ pub fn boundary(r: &mut Reader) -> Result<Data, Damage> {
         let k = r.count("count of curves in (u, v)")?;
         Ok(BoundaryCurve { space, reversed, uv: r.pointers(k, "curves in (u, v)")? })
     };
-    let curves = (0..n).map(|_| curve()).collect::<Result<_, Damage>>()?;
+    let curves = (0..n).map(|_| curve()).collect::<Result<_, Defect>>()?;
     Ok(Data::Boundary { surface, curves })
 }
 
 /// 142.
-pub fn curve_on_surface(r: &mut Reader) -> Result<Data, Damage> {
+pub fn curve_on_surface(r: &mut Reader) -> Result<Data, Defect> {
     r.int("way of making")?;
     let (surface, uv, space) = (r.pointer("surface")?, r.pointer("curve in (u, v)")?, r.pointer("curve in space")?);
     if r.left() > 0 {
@@ -32,7 +32,7 @@ pub fn curve_on_surface(r: &mut Reader) -> Result<Data, Damage> {
 }
 
 /// 143.
-pub fn bounded(r: &mut Reader) -> Result<Data, Damage> {
+pub fn bounded(r: &mut Reader) -> Result<Data, Defect> {
     r.int("kind of boundaries")?;
     let surface = r.pointer("surface")?;
     let n = r.count("count of boundaries")?;
@@ -40,7 +40,7 @@ pub fn bounded(r: &mut Reader) -> Result<Data, Damage> {
 }
 
 /// 144.
-pub fn trimmed(r: &mut Reader) -> Result<Data, Damage> {
+pub fn trimmed(r: &mut Reader) -> Result<Data, Defect> {
     let surface = r.pointer("surface")?;
     let given = r.int("kind of outer border")? != 0;
     let n = r.count("count of inner borders")?;
@@ -50,7 +50,7 @@ pub fn trimmed(r: &mut Reader) -> Result<Data, Damage> {
 }
 
 /// 186: the outer shell, then the voids, each with its sense.
-pub fn solid(r: &mut Reader) -> Result<Data, Damage> {
+pub fn solid(r: &mut Reader) -> Result<Data, Defect> {
     let mut shells = vec![r.pointer("shell")?];
     r.int("orientation")?;
     let n = if r.left() > 0 { r.count("count of voids")? } else { 0 };
@@ -63,13 +63,13 @@ pub fn solid(r: &mut Reader) -> Result<Data, Damage> {
 }
 
 /// 502.
-pub fn vertices(r: &mut Reader) -> Result<Data, Damage> {
+pub fn vertices(r: &mut Reader) -> Result<Data, Defect> {
     let n = r.count("count of vertices")?;
     Ok(Data::Vertices(r.points(n, "vertices")?))
 }
 
 /// 504.
-pub fn edges(r: &mut Reader) -> Result<Data, Damage> {
+pub fn edges(r: &mut Reader) -> Result<Data, Defect> {
     let n = r.count("count of edges")?;
     r.needs(n, 5, "edges")?;
     let mut edge = || {
@@ -79,11 +79,11 @@ pub fn edges(r: &mut Reader) -> Result<Data, Damage> {
             end: (r.pointer("vertex list")?, r.count("vertex")?),
         })
     };
-    Ok(Data::Edges((0..n).map(|_| edge()).collect::<Result<_, Damage>>()?))
+    Ok(Data::Edges((0..n).map(|_| edge()).collect::<Result<_, Defect>>()?))
 }
 
 /// 508.
-pub fn loop_of(r: &mut Reader) -> Result<Data, Damage> {
+pub fn loop_of(r: &mut Reader) -> Result<Data, Defect> {
     let n = r.count("count of edges")?;
     r.needs(n, 5, "edges")?;
     let mut edge = || {
@@ -96,14 +96,14 @@ pub fn loop_of(r: &mut Reader) -> Result<Data, Damage> {
             r.int("isoparametric")?;
             r.pointer("curve in (u, v)")
         };
-        let uv = (0..k).map(|_| uv()).collect::<Result<_, Damage>>()?;
+        let uv = (0..k).map(|_| uv()).collect::<Result<_, Defect>>()?;
         Ok(LoopEdge { is_vertex, edge, reversed, uv })
     };
-    Ok(Data::Loop((0..n).map(|_| edge()).collect::<Result<_, Damage>>()?))
+    Ok(Data::Loop((0..n).map(|_| edge()).collect::<Result<_, Defect>>()?))
 }
 
 /// 510.
-pub fn face(r: &mut Reader) -> Result<Data, Damage> {
+pub fn face(r: &mut Reader) -> Result<Data, Defect> {
     let surface = r.pointer("surface")?;
     let n = r.count("count of loops")?;
     let has_outer = r.int("outer loop")? != 0;
@@ -111,9 +111,9 @@ pub fn face(r: &mut Reader) -> Result<Data, Damage> {
 }
 
 /// 514.
-pub fn shell(r: &mut Reader) -> Result<Data, Damage> {
+pub fn shell(r: &mut Reader) -> Result<Data, Defect> {
     let n = r.count("count of faces")?;
     r.needs(n, 2, "faces")?;
     let mut face = || Ok((r.pointer("face")?, r.int("orientation")? != 0));
-    Ok(Data::Shell((0..n).map(|_| face()).collect::<Result<_, Damage>>()?))
+    Ok(Data::Shell((0..n).map(|_| face()).collect::<Result<_, Defect>>()?))
 }

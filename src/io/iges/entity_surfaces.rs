@@ -1,12 +1,12 @@
 //! Parameters of surface entities.
 
-use crate::io::cad::damage::{Damage, damage};
+use crate::io::cad::defect::{Defect, defect};
 use crate::io::iges::entity_curves::{check_degree, increasing, range};
 use crate::io::iges::entity_data::{Data, NetData};
 use crate::io::iges::params::Reader;
 
 /// 108.
-pub fn plane(r: &mut Reader) -> Result<Data, Damage> {
+pub fn plane(r: &mut Reader) -> Result<Data, Defect> {
     let c = r.reals(4, "coefficients")?;
     let border = if r.left() > 0 { r.pointer("border")? } else { 0 };
     // Place and size of a symbol.
@@ -17,13 +17,13 @@ pub fn plane(r: &mut Reader) -> Result<Data, Damage> {
 }
 
 /// 114: after each row of patches, and after the last one, the standard has patches without meaning; some files leave them out.
-pub fn patches(r: &mut Reader) -> Result<Data, Damage> {
+pub fn patches(r: &mut Reader) -> Result<Data, Defect> {
     const EACH: usize = 48;
     r.int("kind of spline")?;
     r.int("kind of patches")?;
     let (m, n) = (r.count("count of patches in u")?, r.count("count of patches in v")?);
     if m == 0 || n == 0 {
-        return Err(damage("a spline surface of no patches"));
+        return Err(defect("a spline surface of no patches"));
     }
     r.needs(m, 1, "joints")?;
     r.needs(n, 1, "joints")?;
@@ -39,7 +39,7 @@ pub fn patches(r: &mut Reader) -> Result<Data, Damage> {
 }
 
 /// 118.
-pub fn ruled(form: i32, r: &mut Reader) -> Result<Data, Damage> {
+pub fn ruled(form: i32, r: &mut Reader) -> Result<Data, Defect> {
     let rails = [r.pointer("first curve")?, r.pointer("second curve")?];
     let crossed = r.int("direction")? == 1;
     if r.left() > 0 {
@@ -49,13 +49,13 @@ pub fn ruled(form: i32, r: &mut Reader) -> Result<Data, Damage> {
 }
 
 /// 120.
-pub fn revolution(r: &mut Reader) -> Result<Data, Damage> {
+pub fn revolution(r: &mut Reader) -> Result<Data, Defect> {
     let (axis, profile) = (r.pointer("axis")?, r.pointer("profile")?);
     Ok(Data::Revolution { axis, profile, start: r.real("first angle")?, end: r.real("last angle")? })
 }
 
 /// 128.
-pub fn net(r: &mut Reader) -> Result<Data, Damage> {
+pub fn net(r: &mut Reader) -> Result<Data, Defect> {
     let last = (r.count("last index in u")?, r.count("last index in v")?);
     let degree = (r.count("degree in u")?, r.count("degree in v")?);
     for what in ["closed in u", "closed in v", "polynomial", "periodic in u", "periodic in v"] {
@@ -75,20 +75,20 @@ pub fn net(r: &mut Reader) -> Result<Data, Damage> {
 }
 
 /// 140.
-pub fn offset(r: &mut Reader) -> Result<Data, Damage> {
+pub fn offset(r: &mut Reader) -> Result<Data, Defect> {
     let indicator = r.point("side")?;
     Ok(Data::OffsetSurface { indicator, distance: r.real("distance")?, base: r.pointer("surface")? })
 }
 
 /// 190; form 1 says where parameters start.
-pub fn plane_surface(form: i32, r: &mut Reader) -> Result<Data, Damage> {
+pub fn plane_surface(form: i32, r: &mut Reader) -> Result<Data, Defect> {
     let (at, normal) = (r.pointer("point")?, r.pointer("normal")?);
     let reference = if form == 1 { r.pointer("reference direction")? } else { 0 };
     Ok(Data::PlaneSurface { at, normal, reference })
 }
 
 /// 192 cylinder, 194 cone, 196 sphere, 198 torus; form 1 says where parameters start.
-pub fn round(kind: u32, form: i32, r: &mut Reader) -> Result<Data, Damage> {
+pub fn round(kind: u32, form: i32, r: &mut Reader) -> Result<Data, Defect> {
     let at = r.pointer("point")?;
     let (axis, sizes) = match kind {
         192 => (r.pointer("axis")?, [r.real("radius")?, 0.0]),

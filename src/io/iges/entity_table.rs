@@ -7,7 +7,7 @@ use glam::DAffine3;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::Curve;
-use crate::io::cad::damage::{Damage, damage};
+use crate::io::cad::defect::{Defect, defect};
 use crate::io::cad::part::Options;
 use crate::io::files::fault::Malformed;
 use crate::io::iges::entity_data::{Data, Decoded, Pointer};
@@ -24,7 +24,7 @@ const COPIES: usize = 1 << 20;
 
 /// Entities by pointer, with what was made of them.
 #[derive(Debug)]
-pub struct Book {
+pub struct EntityTable {
     /// Directory entries.
     pub entries: Vec<Entry>,
     /// Their parameters, in the same order.
@@ -47,16 +47,16 @@ pub struct Book {
     /// What was repaired or skipped.
     pub warnings: Vec<Malformed>,
     /// Curves made so far, in space and in (u, v).
-    pub(super) curves: BTreeMap<(Pointer, bool), Result<Curve, Damage>>,
+    pub(super) curves: BTreeMap<(Pointer, bool), Result<Curve, Defect>>,
     /// Copies still allowed.
     left: usize,
 }
 
-impl Book {
+impl EntityTable {
     /// Reads the parameters of all entities; `bytes` is the size of the file.
     pub fn new(records: Records, bytes: usize, options: &Options) -> Self {
         let scale = options.file.unwrap_or(records.global.millimetres) / options.model;
-        let mut book = Self {
+        let mut table = Self {
             entries: Vec::new(),
             decoded: Vec::with_capacity(records.entries.len()),
             lines: Vec::with_capacity(records.entries.len()),
@@ -77,42 +77,42 @@ impl Book {
             if parameters.spilled > 0 {
                 spilled = (spilled.0 + parameters.spilled, if spilled.0 == 0 { parameters.line } else { spilled.1 });
             }
-            book.lines.push(parameters.line);
+            table.lines.push(parameters.line);
             let entry = &records.entries[k];
             let decoded = read_one(entry, &parameters.text, &parameters.list);
             if let Ok((_, Some(note))) = &decoded {
-                book.warnings.push(Malformed::line(parameters.line, format!("{}: {note}", named(entry))));
+                table.warnings.push(Malformed::line(parameters.line, format!("{}: {note}", named(entry))));
             }
-            book.decoded.push(match decoded {
+            table.decoded.push(match decoded {
                 Ok((decoded, _)) => decoded,
-                Err(Damage(what)) => {
-                    book.warnings.push(Malformed::line(parameters.line, format!("{} is skipped: {what}", named(entry))));
+                Err(Defect(what)) => {
+                    table.warnings.push(Malformed::line(parameters.line, format!("{} is skipped: {what}", named(entry))));
                     Decoded { data: Data::Damaged, properties: Vec::new() }
                 }
             });
-            book.places.insert(entry.d, k);
+            table.places.insert(entry.d, k);
         }
         if spilled.0 > 0 {
             let what = format!("{} lines of parameters have a separator in column 65, which must be blank; it is read", spilled.0);
-            book.warnings.push(Malformed::line(spilled.1, what));
+            table.warnings.push(Malformed::line(spilled.1, what));
         }
         let Records { entries, warnings, .. } = records;
-        book.entries = entries;
-        book.warnings.splice(0..0, warnings);
-        book
+        table.entries = entries;
+        table.warnings.splice(0..0, warnings);
+        table
     }
 
     /// Index of the entity that a pointer means.
-    pub fn place(&self, d: Pointer) -> Result<usize, Damage> {
+    pub fn place(&self, d: Pointer) -> Result<usize, Defect> {
         match self.places.get(&d) {
             Some(k) => Ok(*k),
-            None if d == 0 => Err(damage("a pointer is missing")),
-            None => Err(damage(format!("there is no entity D{d}"))),
+            None if d == 0 => Err(defect("a pointer is missing")),
+            None => Err(defect(format!("there is no entity D{d}"))),
         }
     }
 
     /// What an entity is.
-    pub fn data(&self, d: Pointer) -> Result<&Data, Damage> {
+    pub fn data(&self, d: Pointer) -> Result<&Data, Defect> {
         self.place(d).map(|k| &self.decoded[k].data)
     }
 
@@ -122,7 +122,7 @@ impl Book {
     }
 
     /// Type and directory line of an entity, for messages.
-    pub fn said(&self, d: Pointer) -> String {
+    pub fn label(&self, d: Pointer) -> String {
         self.entry(d).map_or_else(|| format!("D{d}"), named)
     }
 
@@ -134,7 +134,7 @@ impl Book {
     /// Says something about an entity, at its parameters.
     pub fn warn(&mut self, d: Pointer, what: impl std::fmt::Display) {
         let line = self.line(d);
-        let what = format!("{}: {what}", self.said(d));
+        let what = format!("{}: {what}", self.label(d));
         self.warnings.push(Malformed::line(line, what));
     }
 
@@ -149,31 +149,31 @@ impl Book {
     }
 
     /// Takes `n` from what may be copied.
-    pub fn copy(&mut self, n: usize) -> Result<(), Damage> {
+    pub fn copy(&mut self, n: usize) -> Result<(), Defect> {
         match self.left.checked_sub(n) {
             Some(left) => {
                 self.left = left;
                 Ok(())
             }
-            None => Err(damage("it repeats other entities more often than a file of this size may")),
+            None => Err(defect("it repeats other entities more often than a file of this size may")),
         }
     }
 
     /// The placement of an entity in model units: its matrix, then the matrix of that one, and so on.
-    pub fn placement(&self, mut matrix: Pointer) -> Result<Option<DAffine3>, Damage> {
+    pub fn placement(&self, mut matrix: Pointer) -> Result<Option<DAffine3>, Defect> {
         let mut whole: Option<DAffine3> = None;
         for _ in 0..NESTED {
             if matrix == 0 {
                 return Ok(whole.filter(|m| *m != DAffine3::IDENTITY));
             }
             let Data::Matrix(m) = self.data(matrix)? else {
-                return Err(damage(format!("its matrix is {}, which is not a matrix", self.said(matrix))));
+                return Err(defect(format!("its matrix is {}, which is not a matrix", self.label(matrix))));
             };
             let m = DAffine3 { translation: m.translation * self.scale, ..*m };
             whole = Some(whole.map_or(m, |inner| m * inner));
             matrix = self.entry(matrix).map_or(0, |e| e.transform);
         }
-        Err(damage("its matrices point at each other in a circle, or are nested too deep"))
+        Err(defect("its matrices point at each other in a circle, or are nested too deep"))
     }
 }
 
@@ -185,14 +185,14 @@ fn named(entry: &Entry) -> String {
 /// An entity with a remark about how its values were written.
 type Noted = (Decoded, Option<String>);
 
-fn read_one(entry: &Entry, text: &[u8], list: &crate::io::iges::params::Tokens) -> Result<Noted, Damage> {
+fn read_one(entry: &Entry, text: &[u8], list: &crate::io::iges::params::Tokens) -> Result<Noted, Defect> {
     let mut reader = Reader::new(text, list);
     if list.tokens.is_empty() {
-        return Err(damage("it has no parameters"));
+        return Err(defect("it has no parameters"));
     }
     let kind = reader.int("entity type")?;
     if kind != i64::from(entry.kind) {
-        return Err(damage(format!("its parameters are those of an entity {kind}")));
+        return Err(defect(format!("its parameters are those of an entity {kind}")));
     }
     let decoded = decode(entry, &mut reader)?;
     let note = if !list.ended {

@@ -10,14 +10,14 @@ use crate::io::cad::base_surface::Base;
 use crate::io::cad::border::{Border, backwards, pieces};
 use crate::io::cad::curve_on_surface::composed;
 use crate::io::cad::curves::transformed;
-use crate::io::cad::damage::{Damage, damage};
+use crate::io::cad::defect::{Defect, defect};
 use crate::io::cad::face::{Face, Known};
 use crate::io::cad::face_loops::FaceLoops;
 use crate::io::cad::inside_point::inside;
 use crate::io::cad::revolution_profile::Clear;
 use crate::io::iges::curves::Place;
 use crate::io::iges::entity_data::{Data, EdgeData, LoopEdge, Pointer};
-use crate::io::iges::entity_table::Book;
+use crate::io::iges::entity_table::EntityTable;
 use crate::surface::Surface;
 
 /// Curves of a loop, and all that the file has of it in (u, v), those along poles too.
@@ -42,9 +42,9 @@ impl Run {
     }
 }
 
-impl Book {
+impl EntityTable {
     /// The face that a pointer means: a trimmed (144) or bounded (143) surface, a bordered plane (108), a face of a shell (510).
-    pub fn face(&mut self, d: Pointer) -> Result<Face, Damage> {
+    pub fn face(&mut self, d: Pointer) -> Result<Face, Defect> {
         let k = self.place(d)?;
         let data = std::mem::replace(&mut self.decoded[k].data, Data::Busy);
         let made = match &data {
@@ -60,20 +60,20 @@ impl Book {
                 self.decoded[k].data = data.clone();
                 self.walled(d, d, true, &[border])
             }
-            Data::Busy => Err(damage("it is made of itself")),
-            _ => Err(damage("it is not a face")),
+            Data::Busy => Err(defect("it is made of itself")),
+            _ => Err(defect("it is not a face")),
         };
         self.decoded[k].data = data;
         made
     }
 
-    fn walled(&mut self, d: Pointer, surface: Pointer, has_outer: bool, borders: &[Pointer]) -> Result<Face, Damage> {
-        let base = self.base(surface, 0).map_err(|Damage(why)| damage(format!("its surface at D{surface}: {why}")))?;
+    fn walled(&mut self, d: Pointer, surface: Pointer, has_outer: bool, borders: &[Pointer]) -> Result<Face, Defect> {
+        let base = self.base(surface, 0).map_err(|Defect(why)| defect(format!("its surface at D{surface}: {why}")))?;
         let (mut loops, mut outlines) = (Vec::with_capacity(borders.len()), Vec::with_capacity(borders.len()));
         for border in borders {
             job::poll();
             let made = self.loop_of(d, *border, &base);
-            let made = made.map_err(|Damage(why)| damage(format!("its border at D{border}: {why}")))?;
+            let made = made.map_err(|Defect(why)| defect(format!("its border at D{border}: {why}")))?;
             loops.push(made.borders);
             outlines.push(made.outline);
         }
@@ -91,7 +91,7 @@ impl Book {
     }
 
     /// A surface of which the axis cuts the profile: the part that is meant, and others where nothing bounds it; a guess is told.
-    pub(super) fn clear_of_axis(&mut self, d: Pointer, base: Base, loops: &FaceLoops) -> Result<(Base, Vec<Base>), Damage> {
+    pub(super) fn clear_of_axis(&mut self, d: Pointer, base: Base, loops: &FaceLoops) -> Result<(Base, Vec<Base>), Defect> {
         let Clear { base, also, doubt } = base.clear_of_axis(loops, self.slack(), &self.tolerance)?;
         if let Some(doubt) = doubt {
             self.warn(d, doubt);
@@ -100,7 +100,7 @@ impl Book {
     }
 
     /// The curves of a loop; (u, v) still in the file's parameters.
-    fn loop_of(&mut self, face: Pointer, d: Pointer, base: &Base) -> Result<Run, Damage> {
+    fn loop_of(&mut self, face: Pointer, d: Pointer, base: &Base) -> Result<Run, Defect> {
         let k = self.place(d)?;
         let data = std::mem::replace(&mut self.decoded[k].data, Data::Busy);
         let made = match &data {
@@ -110,12 +110,12 @@ impl Book {
                     let pieces = self.paired(face, c.space, &c.uv, base)?;
                     Ok(if c.reversed { Run { borders: backwards(pieces.borders), ..pieces } } else { pieces })
                 });
-                each.collect::<Result<Vec<_>, Damage>>().map(|all| all.into_iter().fold(Run::none(), Run::then))
+                each.collect::<Result<Vec<_>, Defect>>().map(|all| all.into_iter().fold(Run::none(), Run::then))
             }
             Data::Loop(edges) => self.edges(face, edges, base),
             // A plane's border may be a curve itself.
-            Data::Damaged => Err(damage("it is damaged")),
-            Data::Busy => Err(damage("it is made of itself")),
+            Data::Damaged => Err(defect("it is damaged")),
+            Data::Busy => Err(defect("it is made of itself")),
             _ => {
                 self.decoded[k].data = data.clone();
                 self.on_surface(face, 0, d, base)
@@ -124,22 +124,22 @@ impl Book {
         self.decoded[k].data = data;
         let made = made?;
         if made.borders.is_empty() {
-            return Err(damage("it has no curves"));
+            return Err(defect("it has no curves"));
         }
         Ok(made)
     }
 
-    fn on_surface(&mut self, face: Pointer, uv: Pointer, space: Pointer, base: &Base) -> Result<Run, Damage> {
+    fn on_surface(&mut self, face: Pointer, uv: Pointer, space: Pointer, base: &Base) -> Result<Run, Defect> {
         let uv = if uv == 0 { Vec::new() } else { vec![uv] };
         self.paired(face, space, &uv, base)
     }
 
     /// A curve in space with its curves in (u, v), piece by piece; where the first is missing or damaged the others make it.
-    fn paired(&mut self, face: Pointer, space: Pointer, uv: &[Pointer], base: &Base) -> Result<Run, Damage> {
-        let in_uv: Result<Vec<Curve>, Damage> = uv.iter().map(|d| self.curve(*d, Place::UV)).collect();
+    fn paired(&mut self, face: Pointer, space: Pointer, uv: &[Pointer], base: &Base) -> Result<Run, Defect> {
+        let in_uv: Result<Vec<Curve>, Defect> = uv.iter().map(|d| self.curve(*d, Place::UV)).collect();
         let in_uv = in_uv.map(|curves| curves.iter().flat_map(pieces).collect::<Vec<Curve>>());
         let outline = in_uv.as_ref().ok().filter(|curves| !curves.is_empty()).cloned();
-        let in_space = if space == 0 { Err(damage("it has no curve in space")) } else { self.curve(space, Place::SPACE) };
+        let in_space = if space == 0 { Err(defect("it has no curve in space")) } else { self.curve(space, Place::SPACE) };
         match (in_space, in_uv) {
             (Ok(curve), in_uv) => {
                 let pieces = pieces(&curve);
@@ -153,7 +153,7 @@ impl Book {
                 let uv = in_uv.into_iter().map(Some).chain(std::iter::repeat(None));
                 Ok(Run { borders: pieces.into_iter().zip(uv).map(|(space, uv)| Border { space, uv }).collect(), outline })
             }
-            (Err(Damage(why)), Ok(in_uv)) if !in_uv.is_empty() => {
+            (Err(Defect(why)), Ok(in_uv)) if !in_uv.is_empty() => {
                 if space != 0 {
                     self.warn(face, format!("a curve of its border is rebuilt from its (u, v): {why}"));
                 }
@@ -172,15 +172,15 @@ impl Book {
     }
 
     /// A loop of edges of a solid.
-    fn edges(&mut self, face: Pointer, edges: &[LoopEdge], base: &Base) -> Result<Run, Damage> {
+    fn edges(&mut self, face: Pointer, edges: &[LoopEdge], base: &Base) -> Result<Run, Defect> {
         let mut made = Run::none();
         for edge in edges.iter().filter(|e| !e.is_vertex) {
             let (list, index) = edge.edge;
             let Data::Edges(all) = self.data(list)? else {
-                return Err(damage(format!("{} is not a list of edges", self.said(list))));
+                return Err(defect(format!("{} is not a list of edges", self.label(list))));
             };
             let found = index.checked_sub(1).and_then(|k| all.get(k)).copied();
-            let found = found.ok_or_else(|| damage(format!("the list at D{list} has no edge {index}")))?;
+            let found = found.ok_or_else(|| defect(format!("the list at D{list} has no edge {index}")))?;
             let mut pieces = self.paired(face, found.curve, &edge.uv, base)?;
             if let [one] = pieces.borders.as_mut_slice() {
                 one.space = self.between(&found, &one.space);

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::io::cad::part::{Group, Place};
 use crate::io::iges::entity_data::{Data, Pointer};
-use crate::io::iges::entity_table::Book;
+use crate::io::iges::entity_table::EntityTable;
 
 /// What is on each level.
 #[derive(Debug, Default)]
@@ -12,13 +12,13 @@ pub struct Levels(BTreeMap<i32, Group>);
 
 impl Levels {
     /// Puts things on the levels that an entity has.
-    pub fn put(&mut self, book: &Book, d: Pointer, things: &[Place]) {
-        let Some(entry) = book.entry(d) else { return };
+    pub fn put(&mut self, table: &EntityTable, d: Pointer, things: &[Place]) {
+        let Some(entry) = table.entry(d) else { return };
         let listed;
         let levels = match entry.level {
             0 => return,
             level @ 1.. => &[level][..],
-            list => match book.data(list.unsigned_abs()) {
+            list => match table.data(list.unsigned_abs()) {
                 Ok(Data::Levels(all)) => {
                     listed = all.clone();
                     &listed
@@ -33,11 +33,11 @@ impl Levels {
     }
 
     /// The layers by their numbers; what has no name has its number for one.
-    pub fn layers(self, book: &Book) -> Vec<Group> {
-        let names: BTreeMap<i32, &String> = book
+    pub fn layers(self, table: &EntityTable) -> Vec<Group> {
+        let names: BTreeMap<i32, &String> = table
             .entries
             .iter()
-            .zip(&book.decoded)
+            .zip(&table.decoded)
             .filter_map(|(entry, decoded)| match &decoded.data {
                 Data::LevelName(name) if !name.is_empty() => Some((entry.level, name)),
                 _ => None,

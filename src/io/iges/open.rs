@@ -9,33 +9,33 @@ use crate::base::job;
 use crate::io::cad::part::Options;
 use crate::io::files::fault::Malformed;
 use crate::io::iges::entity_data::{Data, Pointer};
-use crate::io::iges::entity_table::Book;
+use crate::io::iges::entity_table::EntityTable;
 use crate::io::iges::records;
 
 /// A file read as far as its numbers: entities with pointers, no geometry yet.
 #[derive(Debug)]
 pub struct Opened {
-    pub(super) book: Book,
+    pub(super) table: EntityTable,
 }
 
 /// Reads a file, or says where it stops being one.
 pub fn open(bytes: &[u8], options: &Options) -> Result<Opened, Malformed> {
     let records = records::read(bytes)?;
     let last = records.entries.last().map_or(1, |e| e.line);
-    let book = Book::new(records, bytes.len(), options);
+    let table = EntityTable::new(records, bytes.len(), options);
     let is_used = |data: &Data| !matches!(data, Data::Damaged | Data::Silent);
-    if !book.decoded.iter().any(|d| is_used(&d.data)) {
-        let why = book.warnings.last().map_or(String::new(), |w| format!(": {}", w.what));
+    if !table.decoded.iter().any(|d| is_used(&d.data)) {
+        let why = table.warnings.last().map_or(String::new(), |w| format!(": {}", w.what));
         return Err(Malformed::line(last, format!("the file holds no entity that can be read{why}")));
     }
-    Ok(Opened { book })
+    Ok(Opened { table })
 }
 
 impl Opened {
     /// How many entities of each type the file has.
     pub fn counts(&self) -> BTreeMap<u32, usize> {
         let mut counts = BTreeMap::new();
-        for entry in &self.book.entries {
+        for entry in &self.table.entries {
             job::poll();
             *counts.entry(entry.kind).or_insert(0) += 1;
         }
@@ -47,7 +47,7 @@ impl Opened {
         let mut reach = Box3::EMPTY;
         // Axes, the places of endless surfaces and the ground of faces reach beyond what is offered.
         let mut hidden = BTreeSet::new();
-        for decoded in &self.book.decoded {
+        for decoded in &self.table.decoded {
             job::poll();
             match &decoded.data {
                 Data::Revolution { axis, .. } => hidden.extend([*axis]),
@@ -62,7 +62,7 @@ impl Opened {
         }
         // What the ground is made of is placed with it; what a border is made of counts all the same.
         let mut spaces = BTreeSet::new();
-        for decoded in &self.book.decoded {
+        for decoded in &self.table.decoded {
             match &decoded.data {
                 Data::CurveOnSurface { space, .. } => spaces.extend([*space]),
                 Data::Boundary { curves, .. } => spaces.extend(curves.iter().map(|curve| curve.space)),
@@ -72,14 +72,14 @@ impl Opened {
         }
         let shown = self.with_parts(spaces);
         let hidden: BTreeSet<Pointer> = self.with_parts(hidden).difference(&shown).copied().collect();
-        for (entry, decoded) in self.book.entries.iter().zip(&self.book.decoded) {
+        for (entry, decoded) in self.table.entries.iter().zip(&self.table.decoded) {
             job::poll();
             if entry.status.purpose == 5 || hidden.contains(&entry.d) {
                 continue;
             }
-            let Ok(m) = self.book.placement(entry.transform) else { continue };
+            let Ok(m) = self.table.placement(entry.transform) else { continue };
             let mut see = |p: DVec3| {
-                let p = p * self.book.scale;
+                let p = p * self.table.scale;
                 reach = reach.with(m.map_or(p, |m| m.transform_point3(p)));
             };
             let flat = |p: &[f64; 2], z: f64| DVec3::new(p[0], p[1], z);
@@ -105,7 +105,7 @@ impl Opened {
         let mut open: Vec<Pointer> = all.iter().copied().collect();
         while let Some(d) = open.pop() {
             job::poll();
-            let parts = match self.book.data(d) {
+            let parts = match self.table.data(d) {
                 Ok(Data::Composite(pieces)) => pieces.clone(),
                 Ok(Data::Revolution { axis, profile, .. }) => vec![*axis, *profile],
                 Ok(Data::Ruled { rails, .. }) => rails.to_vec(),

@@ -1,6 +1,6 @@
 //! Free-format parameters: values between separators, texts counted in advance (`5Hround`).
 
-use crate::io::cad::damage::{Damage, damage};
+use crate::io::cad::defect::{Defect, defect};
 
 /// Where the values of a list of parameters stand in its text.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -138,21 +138,21 @@ impl<'a> Reader<'a> {
     }
 
     /// A real number; one left out is 0.
-    pub fn real(&mut self, what: &str) -> Result<f64, Damage> {
+    pub fn real(&mut self, what: &str) -> Result<f64, Defect> {
         let value = self.at + 1;
         if self.left() == 0 {
             if self.ended {
                 return Ok(0.0);
             }
-            return Err(damage(format!("the values stop before the {what} (value {value})")));
+            return Err(defect(format!("the values stop before the {what} (value {value})")));
         }
         match self.next() {
             Token::Empty => Ok(0.0),
             Token::Bare(from, to) => match real(&self.text[from..to]) {
                 Some(x) => Ok(x),
-                None => Err(damage(format!("`{}` is not a number ({what}, value {value})", shown(&self.text[from..to])))),
+                None => Err(defect(format!("`{}` is not a number ({what}, value {value})", shown(&self.text[from..to])))),
             },
-            Token::Text(..) => Err(damage(format!("a text is given where the {what} is expected (value {value})"))),
+            Token::Text(..) => Err(defect(format!("a text is given where the {what} is expected (value {value})"))),
         }
     }
 
@@ -165,54 +165,54 @@ impl<'a> Reader<'a> {
     }
 
     /// Three real numbers.
-    pub fn point(&mut self, what: &str) -> Result<glam::DVec3, Damage> {
+    pub fn point(&mut self, what: &str) -> Result<glam::DVec3, Defect> {
         Ok(glam::DVec3::new(self.real(what)?, self.real(what)?, self.real(what)?))
     }
 
     /// As many real numbers, checked against what is left before anything is allocated.
-    pub fn reals(&mut self, n: usize, what: &str) -> Result<Vec<f64>, Damage> {
+    pub fn reals(&mut self, n: usize, what: &str) -> Result<Vec<f64>, Defect> {
         self.needs(n, 1, what)?;
         (0..n).map(|_| self.real(what)).collect()
     }
 
     /// As many points.
-    pub fn points(&mut self, n: usize, what: &str) -> Result<Vec<glam::DVec3>, Damage> {
+    pub fn points(&mut self, n: usize, what: &str) -> Result<Vec<glam::DVec3>, Defect> {
         self.needs(n, 3, what)?;
         (0..n).map(|_| self.point(what)).collect()
     }
 
     /// Fails unless `n` groups of `each` values are left.
-    pub fn needs(&self, n: usize, each: usize, what: &str) -> Result<(), Damage> {
+    pub fn needs(&self, n: usize, each: usize, what: &str) -> Result<(), Defect> {
         let needed = n.saturating_mul(each);
         if needed <= self.left() {
             return Ok(());
         }
-        Err(damage(format!("{n} of {what} are announced, which takes {needed} values, but {} are left", self.left())))
+        Err(defect(format!("{n} of {what} are announced, which takes {needed} values, but {} are left", self.left())))
     }
 
     /// A whole number; one left out is 0.
-    pub fn int(&mut self, what: &str) -> Result<i64, Damage> {
+    pub fn int(&mut self, what: &str) -> Result<i64, Defect> {
         let value = self.at + 1;
         let x = self.real(what)?;
         if x.fract() == 0.0 && x.abs() <= f64::from(i32::MAX) {
             return Ok(x as i64);
         }
-        Err(damage(format!("{what} must be a whole number, got {x} (value {value})")))
+        Err(defect(format!("{what} must be a whole number, got {x} (value {value})")))
     }
 
     /// A count or an index: a whole number from 0.
-    pub fn count(&mut self, what: &str) -> Result<usize, Damage> {
+    pub fn count(&mut self, what: &str) -> Result<usize, Defect> {
         let x = self.int(what)?;
-        usize::try_from(x).map_err(|_| damage(format!("{what} must not be negative, got {x}")))
+        usize::try_from(x).map_err(|_| defect(format!("{what} must not be negative, got {x}")))
     }
 
     /// A pointer to a directory entry, 0 for none.
-    pub fn pointer(&mut self, what: &str) -> Result<u32, Damage> {
+    pub fn pointer(&mut self, what: &str) -> Result<u32, Defect> {
         Ok(self.int(what)?.unsigned_abs() as u32)
     }
 
     /// As many pointers.
-    pub fn pointers(&mut self, n: usize, what: &str) -> Result<Vec<u32>, Damage> {
+    pub fn pointers(&mut self, n: usize, what: &str) -> Result<Vec<u32>, Defect> {
         self.needs(n, 1, what)?;
         (0..n).map(|_| self.pointer(what)).collect()
     }

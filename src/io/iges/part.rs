@@ -10,14 +10,14 @@ use crate::base::bbox::Box3;
 use crate::base::tolerance::Tolerance;
 use crate::base::{job, limits};
 use crate::io::cad::base_surface::Base;
-use crate::io::cad::damage::Damage;
+use crate::io::cad::defect::Defect;
 use crate::io::cad::face::Face;
 use crate::io::cad::face_loops::FaceLoops;
-use crate::io::cad::part::{Group, Item, Names, Part, Place as Made, Shades, Unusable};
+use crate::io::cad::part::{Group, Item, Names, Part, Place as ItemPlace, Shades, Unusable};
 use crate::io::files::fault::Malformed;
 use crate::io::iges::curves::Place;
 use crate::io::iges::entity_data::{Data, Pointer};
-use crate::io::iges::entity_table::{Book, NESTED};
+use crate::io::iges::entity_table::{EntityTable, NESTED};
 use crate::io::iges::levels::Levels;
 use crate::io::iges::open::Opened;
 
@@ -44,10 +44,10 @@ const COLORS: [([f64; 3], &str); 8] = [
 impl Opened {
     /// Makes curves and surfaces of the entities.
     pub fn part(mut self, tolerance: Tolerance) -> Part {
-        self.book.tolerance = tolerance;
-        let part = Part { unit: self.book.unit, model_unit: self.book.model_unit, mark: "D", ..Part::default() };
-        Maker {
-            book: self.book,
+        self.table.tolerance = tolerance;
+        let part = Part { unit: self.table.unit, model_unit: self.table.model_unit, mark: "D", ..Part::default() };
+        PartBuilder {
+            table: self.table,
             part,
             made: BTreeMap::new(),
             names: Names::default(),
@@ -58,30 +58,30 @@ impl Opened {
     }
 }
 
-struct Maker {
-    book: Book,
+struct PartBuilder {
+    table: EntityTable,
     part: Part,
-    made: BTreeMap<Pointer, Made>,
+    made: BTreeMap<Pointer, ItemPlace>,
     names: Names,
     shades: Shades,
     levels: Levels,
 }
 
-impl Maker {
+impl PartBuilder {
     fn run(mut self) -> Part {
         let (parts, members) = self.relations();
         let mut groups = Vec::new();
-        for k in 0..self.book.entries.len() {
+        for k in 0..self.table.entries.len() {
             job::poll();
-            let entry = &self.book.entries[k];
+            let entry = &self.table.entries[k];
             let (d, kind, status) = (entry.d, entry.kind, entry.status);
             // Faces and shells may be marked as parts although nothing has them.
-            let is_bare = matches!(self.book.decoded[k].data, Data::Face { .. } | Data::Shell(_)) && !parts.contains(&d);
+            let is_bare = matches!(self.table.decoded[k].data, Data::Face { .. } | Data::Shell(_)) && !parts.contains(&d);
             let alone = !status.physically_dependent || members.contains(&d) || is_bare;
             if status.blanked || !PURPOSES.contains(&status.purpose) || !alone || parts.contains(&d) {
                 continue;
             }
-            match (kind, &self.book.decoded[k].data) {
+            match (kind, &self.table.decoded[k].data) {
                 (_, Data::Group(_) | Data::Shell(_) | Data::Solid { .. }) => groups.push(d),
                 (_, Data::Damaged) if SURFACES.contains(&kind) || FACES.contains(&kind) => {
                     self.unusable(d, "its parameters cannot be read".to_owned());
@@ -106,15 +106,15 @@ impl Maker {
         }
         self.unknown();
         self.gaps();
-        self.part.layers = std::mem::take(&mut self.levels).layers(&self.book);
-        self.part.warnings = std::mem::take(&mut self.book.warnings);
+        self.part.layers = std::mem::take(&mut self.levels).layers(&self.table);
+        self.part.warnings = std::mem::take(&mut self.table.warnings);
         self.part
     }
 
     /// Surfaces that are only the ground of faces, faces of shells and shells of solids, and what visible groups hold.
     fn relations(&self) -> (BTreeSet<Pointer>, BTreeSet<Pointer>) {
         let (mut parts, mut members) = (BTreeSet::new(), BTreeSet::new());
-        for (entry, decoded) in self.book.entries.iter().zip(&self.book.decoded) {
+        for (entry, decoded) in self.table.entries.iter().zip(&self.table.decoded) {
             match &decoded.data {
                 Data::Trimmed { surface, .. }
                 | Data::Bounded { surface, .. }
@@ -132,80 +132,80 @@ impl Maker {
     }
 
     fn points(&mut self, d: Pointer, points: Vec<DVec3>) {
-        let matrix = match self.book.placement(self.book.entry(d).map_or(0, |e| e.transform)) {
+        let matrix = match self.table.placement(self.table.entry(d).map_or(0, |e| e.transform)) {
             Ok(matrix) => matrix,
-            Err(Damage(why)) => return self.skipped(d, &why),
+            Err(Defect(why)) => return self.skipped(d, &why),
         };
-        let place = |p: DVec3| matrix.map_or(p * self.book.scale, |m| m.transform_point3(p * self.book.scale));
+        let place = |p: DVec3| matrix.map_or(p * self.table.scale, |m| m.transform_point3(p * self.table.scale));
         let value: Vec<DVec3> = points.into_iter().map(place).collect();
         if value.iter().any(|p| p.abs().max_element() > limits::COORDINATE) {
             return self.skipped(d, "its coordinates are too large");
         }
-        self.made.insert(d, Made::Point(self.part.points.len()));
+        self.made.insert(d, ItemPlace::Point(self.part.points.len()));
         let item = self.item(d, "point", self.part.points.len(), value);
         self.part.points.push(item);
     }
 
     fn curve(&mut self, d: Pointer) {
-        match self.book.curve(d, Place::SPACE) {
-            Ok(curve) if curve.length() <= self.book.tolerance.point => self.skipped(d, "it is shorter than the tolerance"),
+        match self.table.curve(d, Place::SPACE) {
+            Ok(curve) if curve.length() <= self.table.tolerance.point => self.skipped(d, "it is shorter than the tolerance"),
             Ok(curve) => {
-                self.made.insert(d, Made::Curve(self.part.curves.len()));
+                self.made.insert(d, ItemPlace::Curve(self.part.curves.len()));
                 let item = self.item(d, "curve", self.part.curves.len(), curve);
                 self.part.curves.push(item);
             }
-            Err(Damage(why)) => self.skipped(d, &why),
+            Err(Defect(why)) => self.skipped(d, &why),
         }
     }
 
     fn surface(&mut self, d: Pointer, flipped: bool) {
         let is_face = matches!(
-            self.book.data(d),
+            self.table.data(d),
             Ok(Data::Trimmed { .. } | Data::Bounded { .. } | Data::Face { .. } | Data::Plane { border: 1.., .. })
         );
-        let made = if is_face { self.book.face(d) } else { self.book.whole(d) };
+        let made = if is_face { self.table.face(d) } else { self.table.whole(d) };
         match made {
             Ok(mut face) => {
                 face.flipped = flipped;
-                self.made.insert(d, Made::Surface(self.part.surfaces.len()));
+                self.made.insert(d, ItemPlace::Surface(self.part.surfaces.len()));
                 let item = self.item(d, "surface", self.part.surfaces.len(), face);
                 self.part.surfaces.push(item);
             }
-            Err(Damage(why)) => self.unusable(d, why),
+            Err(Defect(why)) => self.unusable(d, why),
         }
     }
 
     /// Leaves out a face.
     fn unusable(&mut self, d: Pointer, cause: String) {
-        self.part.unusable.push(Unusable { face: None, entity: self.book.said(d), line: self.book.line(d), cause, least_area: 0.0 });
+        self.part.unusable.push(Unusable { face: None, entity: self.table.label(d), line: self.table.line(d), cause, least_area: 0.0 });
     }
 
     fn skipped(&mut self, d: Pointer, why: &str) {
-        self.book.warn(d, format!("skipped: {why}"));
+        self.table.warn(d, format!("skipped: {why}"));
     }
 
     fn item<T>(&mut self, d: Pointer, word: &str, before: usize, value: T) -> Item<T> {
         let (name, own) = self.name(d, word, before);
         let color = self.color(d);
         if let Some(made) = self.made.get(&d).copied() {
-            self.levels.put(&self.book, d, &[made]);
+            self.levels.put(&self.table, d, &[made]);
         }
         if let (Some((rgb, color_name)), Some(made)) = (&color, self.made.get(&d).copied()) {
             self.shades.group(&mut self.part.colors, *rgb, color_name).put(made);
         }
-        Item { name, own, color: color.map(|c| c.0), id: u64::from(d), line: self.book.line(d), value }
+        Item { name, own, color: color.map(|c| c.0), id: u64::from(d), line: self.table.line(d), value }
     }
 
     /// The name property, else the label, else a word and a number; with another number where it is taken. Behind it what the file has.
     fn name(&mut self, d: Pointer, word: &str, before: usize) -> (String, Option<String>) {
-        let given = self.book.place(d).ok().and_then(|k| {
-            let names = self.book.decoded[k].properties.iter().filter_map(|p| match self.book.data(*p) {
+        let given = self.table.place(d).ok().and_then(|k| {
+            let names = self.table.decoded[k].properties.iter().filter_map(|p| match self.table.data(*p) {
                 Ok(Data::Name(name)) if !name.is_empty() => Some(name.clone()),
                 _ => None,
             });
             names.into_iter().next()
         });
-        let label = self.book.entry(d).filter(|e| !e.label.is_empty()).map(|e| match e.subscript {
+        let label = self.table.entry(d).filter(|e| !e.label.is_empty()).map(|e| match e.subscript {
             0 => e.label.clone(),
             n => format!("{}{n}", e.label),
         });
@@ -216,12 +216,12 @@ impl Maker {
 
     /// Colour with the file's name for it.
     fn color(&self, d: Pointer) -> Option<([f64; 3], String)> {
-        let color = self.book.entry(d)?.color;
+        let color = self.table.entry(d)?.color;
         if color >= 0 {
             let k = usize::try_from(color).ok()?.checked_sub(1)?;
             return COLORS.get(k).map(|(rgb, name)| (*rgb, (*name).to_owned()));
         }
-        match self.book.data(u32::try_from(-color).ok()?) {
+        match self.table.data(u32::try_from(-color).ok()?) {
             Ok(Data::Color { rgb, name }) => Some((rgb.map(|c| (c / 100.0).clamp(0.0, 1.0)), name.clone())),
             _ => None,
         }
@@ -231,30 +231,30 @@ impl Maker {
     fn group(&mut self, d: Pointer) {
         let mut group = Group::default();
         let mut seen = BTreeSet::new();
-        if let Err(Damage(why)) = self.gather(d, &mut group, &mut seen, 0) {
+        if let Err(Defect(why)) = self.gather(d, &mut group, &mut seen, 0) {
             self.skipped(d, &why);
         }
         if group.is_empty() {
             return;
         }
-        let word = match self.book.data(d) {
+        let word = match self.table.data(d) {
             Ok(Data::Solid { .. }) => "solid",
             Ok(Data::Shell(_)) => "shell",
             _ => "group",
         };
         (group.name, group.own) = self.name(d, word, self.part.groups.len());
-        self.levels.put(&self.book, d, &group.members());
+        self.levels.put(&self.table, d, &group.members());
         self.bodies(d, &group);
         self.part.groups.push(group);
     }
 
     /// Puts solids and shells into lists of their own, shells of solids too.
     fn bodies(&mut self, d: Pointer, group: &Group) {
-        match self.book.data(d) {
+        match self.table.data(d) {
             Ok(Data::Shell(_)) => self.part.shells.push(group.clone()),
             Ok(Data::Solid { shells }) => {
                 for shell in shells.clone() {
-                    let Ok(Data::Shell(faces)) = self.book.data(shell) else { continue };
+                    let Ok(Data::Shell(faces)) = self.table.data(shell) else { continue };
                     let mut skin = Group { name: group.name.clone(), own: group.own.clone(), ..Group::default() };
                     faces.iter().filter_map(|(face, _)| self.made.get(face)).for_each(|made| skin.put(*made));
                     self.part.shells.push(skin);
@@ -265,18 +265,18 @@ impl Maker {
         }
     }
 
-    fn gather(&mut self, d: Pointer, group: &mut Group, seen: &mut BTreeSet<Pointer>, depth: usize) -> Result<(), Damage> {
+    fn gather(&mut self, d: Pointer, group: &mut Group, seen: &mut BTreeSet<Pointer>, depth: usize) -> Result<(), Defect> {
         if depth > NESTED {
-            return Err(Damage("groups are nested too deep".to_owned()));
+            return Err(Defect("groups are nested too deep".to_owned()));
         }
-        self.book.copy(1)?;
+        self.table.copy(1)?;
         if !seen.insert(d) {
             return Ok(());
         }
         match self.made.get(&d) {
             Some(made) => group.put(*made),
             None => {
-                let inside: Vec<(Pointer, Option<bool>)> = match self.book.data(d) {
+                let inside: Vec<(Pointer, Option<bool>)> = match self.table.data(d) {
                     Ok(Data::Group(list)) => list.iter().map(|m| (*m, None)).collect(),
                     Ok(Data::Solid { shells }) => shells.iter().map(|m| (*m, None)).collect(),
                     Ok(Data::Shell(faces)) => faces.iter().map(|(m, along)| (*m, Some(*along))).collect(),
@@ -298,38 +298,38 @@ impl Maker {
 
     /// Says once by how much borders are off.
     fn gaps(&mut self) {
-        let slack = self.book.slack();
-        let book = &self.book;
-        if let Some((worst, n)) = self.part.list_repairs(slack, |item| book.said(item.id as Pointer)) {
+        let slack = self.table.slack();
+        let table = &self.table;
+        if let Some((worst, n)) = self.part.list_repairs(slack, |item| table.label(item.id as Pointer)) {
             let others = if n == 0 { String::new() } else { format!(", as the borders of {n} more faces are by less") };
-            let (d, gap) = (self.part.surfaces[worst.face].id as Pointer, self.book.length(worst.distance));
-            self.book.warn(d, format!("its borders are up to {gap} off its surface or each other{others}"));
+            let (d, gap) = (self.part.surfaces[worst.face].id as Pointer, self.table.length(worst.distance));
+            self.table.warn(d, format!("its borders are up to {gap} off its surface or each other{others}"));
         }
     }
 
     /// Counts visible entities of types that are not read.
     fn unknown(&mut self) {
         let mut kinds: BTreeMap<(u32, i32), (u64, usize)> = BTreeMap::new();
-        for (entry, decoded) in self.book.entries.iter().zip(&self.book.decoded) {
+        for (entry, decoded) in self.table.entries.iter().zip(&self.table.decoded) {
             if decoded.data == Data::Unknown && !entry.status.blanked {
                 kinds.entry((entry.kind, entry.form)).or_insert((entry.line, 0)).1 += 1;
             }
         }
         for ((kind, form), (line, n)) in kinds {
             let what = if n == 1 { "entity".to_owned() } else { format!("{n} entities") };
-            self.book.warnings.push(Malformed::line(line, format!("{what} of type {kind} form {form} are not read")));
+            self.table.warnings.push(Malformed::line(line, format!("{what} of type {kind} form {form} are not read")));
         }
     }
 }
 
-impl Book {
+impl EntityTable {
     /// A surface that nothing trims.
-    fn whole(&mut self, d: Pointer) -> Result<Face, Damage> {
+    fn whole(&mut self, d: Pointer) -> Result<Face, Defect> {
         let base = self.base(d, 0)?;
         let (base, also) = self.clear_of_axis(d, base, &FaceLoops::NONE)?;
         let of = |base: &Base| base.surface(&Box3::EMPTY, self.origin, &self.tolerance);
         let mut face = Face::whole(&base, of(&base)?, &self.tolerance);
-        face.also = also.iter().map(of).collect::<Result<_, Damage>>()?;
+        face.also = also.iter().map(of).collect::<Result<_, Defect>>()?;
         Ok(face)
     }
 }

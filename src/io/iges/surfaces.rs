@@ -10,19 +10,19 @@ use crate::io::cad::base_surface::Base;
 use crate::io::cad::border::{Border, reach};
 use crate::io::cad::control_nets::trimmed_net;
 use crate::io::cad::curves::check_weights;
-use crate::io::cad::damage::{Damage, damage};
+use crate::io::cad::defect::{Defect, defect};
 use crate::io::cad::face;
 use crate::io::iges::curves::{Place, bernstein};
 use crate::io::iges::entity_data::{Data, NetData, Pointer};
-use crate::io::iges::entity_table::{Book, NESTED};
+use crate::io::iges::entity_table::{EntityTable, NESTED};
 use crate::surface::NurbsSurface;
 use crate::surface::swept::revolve::Axis;
 
-impl Book {
+impl EntityTable {
     /// The surface that a pointer means, its matrix included.
-    pub fn base(&mut self, d: Pointer, depth: usize) -> Result<Base, Damage> {
+    pub fn base(&mut self, d: Pointer, depth: usize) -> Result<Base, Defect> {
         if depth > NESTED {
-            return Err(damage("surfaces are nested too deep"));
+            return Err(defect("surfaces are nested too deep"));
         }
         let k = self.place(d)?;
         let matrix = self.placement(self.entries[k].transform)?;
@@ -36,7 +36,7 @@ impl Book {
         Ok(base)
     }
 
-    fn base_of(&mut self, d: Pointer, data: &Data, depth: usize) -> Result<Base, Damage> {
+    fn base_of(&mut self, d: Pointer, data: &Data, depth: usize) -> Result<Base, Defect> {
         let scale = self.scale;
         match data {
             Data::Net(net) => {
@@ -47,7 +47,7 @@ impl Book {
             Data::Plane { coefficients: [a, b, c, far], .. } => {
                 let normal = DVec3::new(*a, *b, *c);
                 let size = normal.length();
-                let unit = math::unit(normal, 0.0).ok_or_else(|| damage("its normal has no length"))?;
+                let unit = math::unit(normal, 0.0).ok_or_else(|| defect("its normal has no length"))?;
                 let first = math::any_normal(unit);
                 Ok(Base::Plane(unit * (far / size * scale), first, unit.cross(first)))
             }
@@ -59,7 +59,7 @@ impl Book {
             Data::Revolution { axis, profile, start, end } => {
                 let line = self.curve(*axis, Place::SPACE)?;
                 let (about, to) = (line.start(), line.end());
-                let direction = math::unit(to - about, 0.0).ok_or_else(|| damage("its axis has no length"))?;
+                let direction = math::unit(to - about, 0.0).ok_or_else(|| defect("its axis has no length"))?;
                 let first = match self.data(*profile)? {
                     Data::Arc { center, start, .. } => {
                         let angle = math::atan2(start[1] - center[1], start[0] - center[0]);
@@ -74,7 +74,7 @@ impl Book {
                 let profile = self.curve(*profile, Place::SPACE)?;
                 let by = *end * scale - profile.start();
                 if by.length() <= self.tolerance.rounding {
-                    return Err(damage("it has no curve to sweep"));
+                    return Err(defect("it has no curve to sweep"));
                 }
                 Ok(Base::Swept { profile, by })
             }
@@ -90,14 +90,14 @@ impl Book {
                 let reference = self.reference(*reference, direction)?;
                 self.round(*kind, Axis { about, direction }, reference, *sizes)
             }
-            Data::Damaged => Err(damage(format!("{} is damaged", self.said(d)))),
-            Data::Busy => Err(damage(format!("{} is made of itself", self.said(d)))),
-            _ => Err(damage(format!("{} is not a surface", self.said(d)))),
+            Data::Damaged => Err(defect(format!("{} is damaged", self.label(d)))),
+            Data::Busy => Err(defect(format!("{} is made of itself", self.label(d)))),
+            _ => Err(defect(format!("{} is not a surface", self.label(d)))),
         }
     }
 
     /// The offset of a surface; `side` says on which side a distance above 0 is, in the middle of its parameters.
-    fn beside(&mut self, d: Pointer, side: DVec3, distance: f64, of: Pointer, depth: usize) -> Result<Base, Damage> {
+    fn beside(&mut self, d: Pointer, side: DVec3, distance: f64, of: Pointer, depth: usize) -> Result<Base, Defect> {
         let base = self.base(of, depth + 1)?;
         let upright = base.upright(&Box3::EMPTY, self.origin, &self.tolerance)?;
         let distance = if upright.dot(side) < 0.0 { -distance } else { distance };
@@ -106,7 +106,7 @@ impl Book {
             let grown = |size: f64| size + distance / self.scale;
             let sizes = if kind == 196 { [grown(a), b] } else { [a, grown(b)] };
             if sizes[usize::from(kind == 198)] <= 0.0 {
-                return Err(damage("its offset turns it inside out"));
+                return Err(defect("its offset turns it inside out"));
             }
             let matrix = self.placement(self.entry(of).map_or(0, |e| e.transform))?;
             let base = self.base_of(of, &Data::Round { kind, at, axis, sizes, reference }, depth + 1)?;
@@ -120,12 +120,13 @@ impl Book {
     }
 
     /// The base of a face on an offset: on its other side where only there it has the borders.
-    pub(super) fn sided(&mut self, d: Pointer, base: Base, loops: &[Vec<Border>]) -> Result<Base, Damage> {
+    pub(super) fn sided(&mut self, d: Pointer, base: Base, loops: &[Vec<Border>]) -> Result<Base, Defect> {
         let k = self.place(d)?;
         let Data::OffsetSurface { indicator, .. } = self.decoded[k].data else { return Ok(base) };
         let reach = reach(loops);
-        let off =
-            |book: &Self, base: &Base| Ok::<f64, Damage>(face::off(&base.surface(&reach, book.origin, &book.tolerance)?, loops).distance);
+        let off = |table: &Self, base: &Base| {
+            Ok::<f64, Defect>(face::off(&base.surface(&reach, table.origin, &table.tolerance)?, loops).distance)
+        };
         let here = off(self, &base)?;
         if here <= NEAR_MISS * self.slack() {
             return Ok(base);
@@ -150,7 +151,7 @@ impl Book {
         }
     }
 
-    fn net(&self, data: &NetData) -> Result<Base, Damage> {
+    fn net(&self, data: &NetData) -> Result<Base, Defect> {
         check_weights(&data.weights)?;
         let poles: Vec<DVec4> = data.points.iter().zip(&data.weights).map(|(p, w)| weighted(*p * self.scale, *w)).collect();
         let net = NurbsSurface { degree: data.degree, knots: data.knots.clone(), poles, counts: data.counts };
@@ -158,7 +159,7 @@ impl Book {
     }
 
     /// Bicubic patches as one net with threefold knots; on common borders the later patch counts.
-    fn patches(&mut self, d: Pointer, u: &[f64], v: &[f64], patches: &[f64], dummies: bool) -> Result<Base, Damage> {
+    fn patches(&mut self, d: Pointer, u: &[f64], v: &[f64], patches: &[f64], dummies: bool) -> Result<Base, Defect> {
         let (m, n) = (u.len() - 1, v.len() - 1);
         let counts = (3 * m + 1, 3 * n + 1);
         self.copy(counts.0.saturating_mul(counts.1))?;
@@ -192,31 +193,31 @@ impl Book {
         Ok(Base::Net(trimmed_net(net, range)?, range))
     }
 
-    fn point(&self, d: Pointer) -> Result<DVec3, Damage> {
-        let Data::Point(p) = self.data(d)? else { return Err(damage(format!("{} is not a point", self.said(d)))) };
+    fn point(&self, d: Pointer) -> Result<DVec3, Defect> {
+        let Data::Point(p) = self.data(d)? else { return Err(defect(format!("{} is not a point", self.label(d)))) };
         let m = self.placement(self.entry(d).map_or(0, |e| e.transform))?;
         Ok(m.map_or(*p * self.scale, |m| m.transform_point3(*p * self.scale)))
     }
 
-    fn direction(&self, d: Pointer) -> Result<DVec3, Damage> {
-        let Data::Direction(v) = self.data(d)? else { return Err(damage(format!("{} is not a direction", self.said(d)))) };
+    fn direction(&self, d: Pointer) -> Result<DVec3, Defect> {
+        let Data::Direction(v) = self.data(d)? else { return Err(defect(format!("{} is not a direction", self.label(d)))) };
         let m = self.placement(self.entry(d).map_or(0, |e| e.transform))?;
-        math::unit(m.map_or(*v, |m| m.transform_vector3(*v)), 0.0).ok_or_else(|| damage("a direction has no length"))
+        math::unit(m.map_or(*v, |m| m.transform_vector3(*v)), 0.0).ok_or_else(|| defect("a direction has no length"))
     }
 
     /// The unit vector at right angles to an axis where parameters start; any, when the file gives none.
-    fn reference(&self, d: Pointer, axis: DVec3) -> Result<DVec3, Damage> {
+    fn reference(&self, d: Pointer, axis: DVec3) -> Result<DVec3, Defect> {
         if d == 0 {
             return Ok(math::any_normal(axis));
         }
         let v = self.direction(d)?;
-        math::unit(v.reject_from_normalized(axis), PARALLEL).ok_or_else(|| damage("the reference direction runs along the axis"))
+        math::unit(v.reject_from_normalized(axis), PARALLEL).ok_or_else(|| defect("the reference direction runs along the axis"))
     }
 
-    fn round(&self, kind: u32, axis: Axis, reference: DVec3, [a, b]: [f64; 2]) -> Result<Base, Damage> {
+    fn round(&self, kind: u32, axis: Axis, reference: DVec3, [a, b]: [f64; 2]) -> Result<Base, Defect> {
         let radius = a * self.scale;
         if radius < 0.0 || (radius == 0.0 && kind != 194) {
-            return Err(damage("its radius must be above 0"));
+            return Err(defect("its radius must be above 0"));
         }
         match kind {
             192 => Ok(Base::Unbounded { axis, radius, slope: 0.0, reference }),
@@ -228,12 +229,12 @@ impl Book {
 }
 
 /// First and last angle, at most one turn apart.
-fn angles(start: f64, end: f64) -> Result<(f64, f64), Damage> {
+fn angles(start: f64, end: f64) -> Result<(f64, f64), Defect> {
     let turn = std::f64::consts::TAU;
     let end = if end <= start { end + turn } else { end };
     let sweep = end - start;
     if sweep <= 0.0 || sweep > turn * (1.0 + NUDGE) {
-        return Err(damage(format!("its angles run from {start} to {end}, which is not part of a turn")));
+        return Err(defect(format!("its angles run from {start} to {end}, which is not part of a turn")));
     }
     Ok((start, if sweep > turn * (1.0 - EPSILON) { start + turn } else { end }))
 }

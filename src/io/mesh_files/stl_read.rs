@@ -121,7 +121,7 @@ fn assemble(solids: Vec<(String, Corners)>, name: &str) -> (Mesh, Vec<Malformed>
         mesh.faces.push(FaceRange { name, triangles: start..mesh.triangles.len() as u32, quads: 0..0, lines: 0..0 });
     }
     mesh.groups = mesh.faces.iter().map(|face| group_of(&mesh, face)).collect();
-    let told =
+    let skipped =
         (skipped > 0).then(|| Malformed { line: 0, column: None, what: format!("triangles with equal corners are skipped: {skipped}") });
-    (mesh, told.into_iter().collect())
+    (mesh, skipped.into_iter().collect())
 }

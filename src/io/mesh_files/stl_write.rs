@@ -79,8 +79,8 @@ fn single_precision(deck: &Deck) -> io::Result<Option<Loss>> {
             }
         }
     }
-    let told = || format!("all digits of the nodes: they move by up to {moved:.1e} {}, and `encoding: text` keeps them", deck.unit);
-    Ok((moved > SHARE * shortest).then(|| Loss::LeftOut(told())))
+    let loss = || format!("all digits of the nodes: they move by up to {moved:.1e} {}, and `encoding: text` keeps them", deck.unit);
+    Ok((moved > SHARE * shortest).then(|| Loss::LeftOut(loss())))
 }
 
 /// The two triangles of a quad, cut from its first corner to its third: those by which areas and errors are measured.

@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::base::{job, limits};
 use crate::geometry::Motion;
 use crate::io::cad::assembly::Node;
-use crate::io::cad::damage::{Damage, damage};
+use crate::io::cad::defect::{Defect, defect};
 use crate::io::step::product_tables::{Occurrence, Tables};
 use crate::io::step::reader::{Frame, Step};
 use crate::io::step::records::File;
@@ -89,7 +89,7 @@ impl Assembly {
     }
 }
 
-struct Walk<'s, 'f> {
+struct AssemblyReader<'s, 'f> {
     step: &'s mut Step<'f>,
     tables: Tables,
     /// Representations that products have by themselves.
@@ -104,39 +104,42 @@ struct Walk<'s, 'f> {
 pub fn assembly(step: &mut Step) -> Assembly {
     let tables = Tables::of(step.file);
     let owned = tables.shapes.values().flatten().copied().collect();
-    let mut walk = Walk { step, tables, owned, units: BTreeMap::new(), shown: BTreeSet::new(), found: Assembly::default(), full: false };
+    let mut reader =
+        AssemblyReader { step, tables, owned, units: BTreeMap::new(), shown: BTreeSet::new(), found: Assembly::default(), full: false };
     let still = Motion::translation(glam::DVec3::ZERO);
-    let mapped = |walk: &Walk, p: u32| walk.tables.shapes.get(&p).is_some_and(|all| all.iter().any(|r| walk.tables.mapped.contains(r)));
-    let products = walk.tables.products.clone();
+    let mapped = |reader: &AssemblyReader, p: u32| {
+        reader.tables.shapes.get(&p).is_some_and(|all| all.iter().any(|r| reader.tables.mapped.contains(r)))
+    };
+    let products = reader.tables.products.clone();
     for product in products.iter().copied() {
-        if !walk.tables.parts.contains(&product) && !mapped(&walk, product) {
-            walk.product(product, None, String::new(), product, &still, 0);
+        if !reader.tables.parts.contains(&product) && !mapped(&reader, product) {
+            reader.product(product, None, String::new(), product, &still, 0);
         }
     }
     // Representations that no product shows, and those of products that are parts of each other in a circle.
     for of_parts in [false, true] {
-        let left: Vec<u32> = walk.tables.representations.keys().copied().collect();
+        let left: Vec<u32> = reader.tables.representations.keys().copied().collect();
         for representation in left {
-            let skip = walk.shown.contains(&representation)
-                || walk.tables.aspects.contains(&representation)
-                || (!of_parts && walk.tables.mapped.contains(&representation));
-            if !skip && (of_parts || !walk.owned.contains(&representation)) {
-                walk.alone(representation, &still);
+            let skip = reader.shown.contains(&representation)
+                || reader.tables.aspects.contains(&representation)
+                || (!of_parts && reader.tables.mapped.contains(&representation));
+            if !skip && (of_parts || !reader.owned.contains(&representation)) {
+                reader.alone(representation, &still);
             }
         }
     }
-    walk.found
+    reader.found
 }
 
-impl Walk<'_, '_> {
+impl AssemblyReader<'_, '_> {
     fn units(&mut self, context: Option<u32>) -> Units {
         let Some(context) = context else { return Units::NONE };
         if let Some(units) = self.units.get(&context) {
             return *units;
         }
-        let mut said = Vec::new();
-        let units = of_context(self.step.file, context, &mut |k, what| said.push((k, what)));
-        said.into_iter().for_each(|(k, what)| self.step.warn(k, what));
+        let mut warnings = Vec::new();
+        let units = of_context(self.step.file, context, &mut |k, what| warnings.push((k, what)));
+        warnings.into_iter().for_each(|(k, what)| self.step.warn(k, what));
         self.units.insert(context, units);
         units
     }
@@ -188,7 +191,7 @@ impl Walk<'_, '_> {
                     let Occurrence { child, name, entity, .. } = occurrence;
                     self.product(child, Some(instance), name, entity, &placed.then(motion), depth + 1);
                 }
-                Err(Damage(why)) => self.step.warn(occurrence.entity, format!("skipped: its place cannot be read: {why}")),
+                Err(Defect(why)) => self.step.warn(occurrence.entity, format!("skipped: its place cannot be read: {why}")),
             }
         }
     }
@@ -239,7 +242,7 @@ impl Walk<'_, '_> {
             self.step.measure_in(inner);
             let from = self.step.frame(origin)?;
             self.step.measure_in(units);
-            Ok::<_, Damage>((of, self.target(row.entity(2)?, &from)?))
+            Ok::<_, Defect>((of, self.target(row.entity(2)?, &from)?))
         })();
         match placed {
             Ok((of, placed)) => {
@@ -250,18 +253,18 @@ impl Walk<'_, '_> {
                     self.representation(representation, instance, &placed.then(motion), depth + 1);
                 }
             }
-            Err(Damage(why)) => self.step.warn(item, format!("skipped: its place cannot be read: {why}")),
+            Err(Defect(why)) => self.step.warn(item, format!("skipped: its place cannot be read: {why}")),
         }
     }
 
     /// The motion from a frame to a placement or by a transformation.
-    fn target(&self, target: u32, from: &Frame) -> Result<Motion, Damage> {
+    fn target(&self, target: u32, from: &Frame) -> Result<Motion, Defect> {
         let file = self.step.file;
         let Some(row) = file.under(target, b"CARTESIAN_TRANSFORMATION_OPERATOR_3D") else {
             return Ok(from.to(&self.step.frame(target)?));
         };
         let (x, y, at, scale, z) = if file.is_complex(target) {
-            let of = file.under(target, b"CARTESIAN_TRANSFORMATION_OPERATOR").ok_or_else(|| damage("it has no origin"))?;
+            let of = file.under(target, b"CARTESIAN_TRANSFORMATION_OPERATOR").ok_or_else(|| defect("it has no origin"))?;
             (of.maybe(0)?, of.maybe(1)?, of.entity(2)?, of.number(3).unwrap_or(1.0), row.maybe(0)?)
         } else {
             // Name, and name and description of the transformation, stand before its axes.
@@ -269,13 +272,13 @@ impl Walk<'_, '_> {
             (row.maybe(from)?, row.maybe(from + 1)?, row.entity(from + 2)?, row.number(from + 3).unwrap_or(1.0), row.maybe(from + 4)?)
         };
         if scale <= 0.0 {
-            return Err(damage("its scale is not above 0"));
+            return Err(defect("its scale is not above 0"));
         }
         let at = self.step.point(at)?;
         let direction = |k: Option<u32>| k.map(|k| self.step.direction(k)).transpose();
         let z = direction(z)?.unwrap_or(glam::DVec3::Z);
         let x = direction(x)?.unwrap_or_else(|| crate::base::math::any_normal(z));
-        let x = crate::base::math::unit(x.reject_from_normalized(z), 0.0).ok_or_else(|| damage("its axes coincide"))?;
+        let x = crate::base::math::unit(x.reject_from_normalized(z), 0.0).ok_or_else(|| defect("its axes coincide"))?;
         let right = z.cross(x);
         let mirrors = direction(y)?.is_some_and(|y| y.dot(right) < 0.0);
         let to = Frame { at, x, y: right, z };
@@ -284,7 +287,7 @@ impl Walk<'_, '_> {
     }
 
     /// The motion of an occurrence: the frame of one representation goes to that of the other.
-    fn link(&mut self, link: u32, occurrence: &Occurrence) -> Result<Motion, Damage> {
+    fn link(&mut self, link: u32, occurrence: &Occurrence) -> Result<Motion, Defect> {
         let file = self.step.file;
         let relation = file.under(link, b"REPRESENTATION_RELATIONSHIP").unwrap_or_else(|| file.parameters(link));
         let (first, second) = (relation.entity(2)?, relation.entity(3)?);

@@ -10,7 +10,7 @@ use crate::geometry::curves::curve::Shape;
 use crate::geometry::shapes::arc::EllipticArc;
 use crate::geometry::shapes::nurbs::weighted;
 use crate::geometry::{Curve, Kind, Nurbs};
-use crate::io::cad::damage::{Damage, damage};
+use crate::io::cad::defect::{Defect, defect};
 
 const TURN: f64 = std::f64::consts::TAU;
 
@@ -69,9 +69,9 @@ impl Endless {
     }
 
     /// The curve from one parameter to a larger one, of ellipses at most a turn.
-    pub fn part(&self, t0: f64, t1: f64, origin: Origin) -> Result<Curve, Damage> {
+    pub fn part(&self, t0: f64, t1: f64, origin: Origin) -> Result<Curve, Defect> {
         if !(t0.is_finite() && t1.is_finite() && t1 > t0) {
-            return Err(damage(format!("it has no stretch from {t0} to {t1}")));
+            return Err(defect(format!("it has no stretch from {t0} to {t1}")));
         }
         match *self {
             Self::Line(..) => Ok(build::line(self.point(t0), self.point(t1), origin)?),
@@ -100,9 +100,9 @@ impl Endless {
 }
 
 /// A quadratic piece whose middle point has a weight.
-fn piece(points: [DVec3; 3], w: f64, kind: Kind, origin: Origin) -> Result<Curve, Damage> {
+fn piece(points: [DVec3; 3], w: f64, kind: Kind, origin: Origin) -> Result<Curve, Defect> {
     if !(w.is_finite() && points.iter().all(|p| p.is_finite())) {
-        return Err(damage("it reaches too far"));
+        return Err(defect("it reaches too far"));
     }
     let poles = vec![weighted(points[0], 1.0), weighted(points[1], w), weighted(points[2], 1.0)];
     Ok(Curve::new(Shape::Nurbs(std::sync::Arc::new(Nurbs::bezier(0.0, 1.0, poles))), kind, origin))

@@ -11,7 +11,7 @@ use crate::geometry::curves::composite::Composite;
 use crate::geometry::curves::curve::Shape;
 use crate::geometry::{Curve, Kind};
 use crate::io::cad::curves::{check_reach, check_weights, ordered};
-use crate::io::cad::damage::{Damage, damage};
+use crate::io::cad::defect::{Defect, defect};
 use crate::io::step::conics::Endless;
 use crate::io::step::parameters::{Row, Value};
 use crate::io::step::reader::{NESTED, Step};
@@ -32,20 +32,20 @@ pub enum Course {
 
 impl Step<'_> {
     /// The curve that an entity is.
-    pub fn course(&mut self, k: u32, depth: usize) -> Result<Course, Damage> {
+    pub fn course(&mut self, k: u32, depth: usize) -> Result<Course, Defect> {
         if depth > NESTED {
-            return Err(damage("curves are nested too deep, or are made of themselves"));
+            return Err(defect("curves are nested too deep, or are made of themselves"));
         }
         let file = self.file;
         let row = file.parameters(k);
         // The outermost says where to look; a long row of them says nothing more.
-        let inside = |why: Damage, k: u32, step: &Self| if depth > 0 { why } else { damage(format!("{}: {}", step.said(k), why.0)) };
+        let inside = |why: Defect, k: u32, step: &Self| if depth > 0 { why } else { defect(format!("{}: {}", step.label(k), why.0)) };
         let course = match file.name(k) {
             _ if file.is_complex(k) => self.complex(k, depth)?,
             b"LINE" => Course::Endless(Endless::Line(self.point(row.entity(1)?)?, self.vector(row.entity(2)?)?)),
             b"CIRCLE" | b"ELLIPSE" | b"HYPERBOLA" | b"PARABOLA" => Course::Endless(self.conic(k)?),
             b"POLYLINE" => {
-                let points = row.entities(1)?.into_iter().map(|p| self.point(p)).collect::<Result<Vec<DVec3>, Damage>>()?;
+                let points = row.entities(1)?.into_iter().map(|p| self.point(p)).collect::<Result<Vec<DVec3>, Defect>>()?;
                 Course::Bounded(self.polyline(points)?)
             }
             b"TRIMMED_CURVE" => {
@@ -61,12 +61,12 @@ impl Step<'_> {
             }
             b"OFFSET_CURVE_3D" => {
                 let Course::Bounded(of) = self.course(row.entity(1)?, depth + 1)? else {
-                    return Err(damage("it is the offset of an infinite curve"));
+                    return Err(defect("it is the offset of an infinite curve"));
                 };
                 Course::Bounded(build::offset(&of, row.number(2)? * self.scale, self.direction(row.entity(4)?)?, self.origin)?)
             }
             b"B_SPLINE_CURVE_WITH_KNOTS" | b"BEZIER_CURVE" | b"UNIFORM_CURVE" | b"QUASI_UNIFORM_CURVE" => Course::Bounded(self.spline(k)?),
-            _ => return Err(damage(format!("{} is not a curve that can be read", self.said(k)))),
+            _ => return Err(defect(format!("{} is not a curve that can be read", self.label(k)))),
         };
         if let Course::Bounded(curve) = &course {
             check_reach([curve.bbox().min, curve.bbox().max])?;
@@ -74,7 +74,7 @@ impl Step<'_> {
         Ok(course)
     }
 
-    fn complex(&mut self, k: u32, depth: usize) -> Result<Course, Damage> {
+    fn complex(&mut self, k: u32, depth: usize) -> Result<Course, Defect> {
         if self.file.under(k, b"B_SPLINE_CURVE").is_some() {
             return Ok(Course::Bounded(self.spline(k)?));
         }
@@ -84,24 +84,24 @@ impl Step<'_> {
         if let Some(row) = self.file.under(k, b"COMPOSITE_CURVE") {
             return Ok(Course::Bounded(self.composite(row.entities(0)?, depth)?));
         }
-        Err(damage(format!("{} is not a curve that can be read", self.said(k))))
+        Err(defect(format!("{} is not a curve that can be read", self.label(k))))
     }
 
     /// The curve that an entity is, with ends: all of an ellipse.
-    pub fn bounded(&mut self, k: u32, depth: usize) -> Result<Curve, Damage> {
+    pub fn bounded(&mut self, k: u32, depth: usize) -> Result<Curve, Defect> {
         match self.course(k, depth)? {
             Course::Bounded(curve) => Ok(curve),
             Course::Endless(of) if of.closes() => of.part(0.0, TURN, self.origin),
-            Course::Endless(_) => Err(damage("it has no ends")),
+            Course::Endless(_) => Err(defect("it has no ends")),
         }
     }
 
-    fn conic(&mut self, k: u32) -> Result<Endless, Damage> {
+    fn conic(&mut self, k: u32) -> Result<Endless, Defect> {
         let row = self.file.parameters(k);
         let frame = self.frame(row.entity(1)?)?;
-        let length = |n: usize| -> Result<f64, Damage> {
+        let length = |n: usize| -> Result<f64, Defect> {
             let x = row.number(n)? * self.scale;
-            if x > 0.0 { Ok(x) } else { Err(damage("its radius is not above 0")) }
+            if x > 0.0 { Ok(x) } else { Err(defect("its radius is not above 0")) }
         };
         let a = length(2)?;
         Ok(match self.file.name(k) {
@@ -113,7 +113,7 @@ impl Step<'_> {
     }
 
     /// A line through points; those in a row that are one count once.
-    pub fn polyline(&self, mut points: Vec<DVec3>) -> Result<Curve, Damage> {
+    pub fn polyline(&self, mut points: Vec<DVec3>) -> Result<Curve, Defect> {
         points.dedup();
         match points.as_slice() {
             [a, b] => Ok(build::line(*a, *b, self.origin)?),
@@ -121,7 +121,7 @@ impl Step<'_> {
         }
     }
 
-    fn spline(&mut self, k: u32) -> Result<Curve, Damage> {
+    fn spline(&mut self, k: u32) -> Result<Curve, Defect> {
         let Knotted { degree, knots, points, weights } = crate::io::step::splines::curve(self, k)?;
         if let ([a, b], true) = (points.as_slice(), weights.windows(2).all(|w| w[0] == w[1])) {
             return Ok(build::line(*a, *b, self.origin)?);
@@ -130,20 +130,20 @@ impl Step<'_> {
         Ok(build::nurbs(&points, &weights, &knots, degree, self.origin)?)
     }
 
-    fn composite(&mut self, segments: Vec<u32>, depth: usize) -> Result<Curve, Damage> {
+    fn composite(&mut self, segments: Vec<u32>, depth: usize) -> Result<Curve, Defect> {
         let mut pieces = Vec::with_capacity(segments.len());
         for segment in segments {
             let row = self.file.parameters(segment);
             let parent = row.entity(2)?;
             let curve = self.bounded(parent, depth + 1);
-            let curve = curve.map_err(|why| if depth > 0 { why } else { damage(format!("{}: {}", self.said(parent), why.0)) })?;
+            let curve = curve.map_err(|why| if depth > 0 { why } else { defect(format!("{}: {}", self.label(parent), why.0)) })?;
             let curve = if row.flag(1, true) { curve } else { curve.reversed() };
             self.spend(PIECE * curve.composite().map_or(1, |c| c.pieces.len()))?;
             pieces.extend(curve.composite().map_or_else(|| vec![curve.clone()], |c| c.pieces.clone()));
         }
         ordered(&mut pieces, self.slack());
         match pieces.as_slice() {
-            [] => Err(damage("it has no pieces")),
+            [] => Err(defect("it has no pieces")),
             [one] => Ok(one.clone()),
             _ => Ok(Curve::new(Shape::Composite(Arc::new(Composite::new(pieces))), Kind::Composite, self.origin)),
         }
@@ -158,7 +158,7 @@ impl Step<'_> {
     }
 
     /// The stretch of a curve between two trims.
-    fn trimmed(&self, of: &Course, row: Row) -> Result<Curve, Damage> {
+    fn trimmed(&self, of: &Course, row: Row) -> Result<Curve, Defect> {
         let (first, last) = (self.trim(row.get(2)), self.trim(row.get(3)));
         let ahead = row.flag(4, true);
         let by_points = row.get(5).and_then(Value::word) == Some(b"CARTESIAN");
@@ -186,18 +186,18 @@ impl Step<'_> {
                 }
             },
             (_, Some((a, b))) => self.between(of, [a, b], ahead, a.distance(b) <= self.slack()),
-            _ => Err(damage("its trims cannot be read")),
+            _ => Err(defect("its trims cannot be read")),
         }
     }
 
     /// The stretch of a curve from one point of it to another, in its direction or against it; all of it where they are one.
-    pub fn between(&self, of: &Course, [start, end]: [DVec3; 2], ahead: bool, closed: bool) -> Result<Curve, Damage> {
+    pub fn between(&self, of: &Course, [start, end]: [DVec3; 2], ahead: bool, closed: bool) -> Result<Curve, Defect> {
         let (from, to) = if ahead { (start, end) } else { (end, start) };
         let made = match of {
             Course::Endless(endless) => {
                 let (a, b) = (endless.parameter(from), endless.parameter(to));
                 if closed && !endless.closes() {
-                    return Err(damage("its ends coincide"));
+                    return Err(defect("its ends coincide"));
                 }
                 let b = match endless.closes() {
                     true if closed => a + TURN,
@@ -212,7 +212,7 @@ impl Step<'_> {
         Ok(if ahead { made } else { made.reversed() })
     }
 
-    fn stretch(&self, curve: &Curve, from: DVec3, to: DVec3, closed: bool) -> Result<Curve, Damage> {
+    fn stretch(&self, curve: &Curve, from: DVec3, to: DVec3, closed: bool) -> Result<Curve, Defect> {
         let room = self.slack();
         let (t0, t1) = curve.domain();
         let near = |a: DVec3, b: DVec3| a.distance(b) <= room;
@@ -248,7 +248,7 @@ impl Step<'_> {
     }
 
     /// The curve of an edge from its first vertex to its last one; made once.
-    pub fn edge(&mut self, k: u32) -> Result<Curve, Damage> {
+    pub fn edge(&mut self, k: u32) -> Result<Curve, Defect> {
         if let Some(made) = self.edges.get(&k) {
             return made.clone();
         }
@@ -257,29 +257,29 @@ impl Step<'_> {
         made
     }
 
-    fn make_edge(&mut self, k: u32) -> Result<Curve, Damage> {
+    fn make_edge(&mut self, k: u32) -> Result<Curve, Defect> {
         let row = self.file.parameters(k);
         match self.file.name(k) {
             b"EDGE_CURVE" => {
                 let (first, last, geometry) = (row.entity(1)?, row.entity(2)?, row.entity(3)?);
                 let ends = [self.vertex(first)?, self.vertex(last)?];
                 let closed = first == last || ends[0] == ends[1];
-                let of = self.course(geometry, 0).map_err(|Damage(why)| damage(format!("{}: {why}", self.said(geometry))))?;
+                let of = self.course(geometry, 0).map_err(|Defect(why)| defect(format!("{}: {why}", self.label(geometry))))?;
                 self.between(&of, ends, row.flag(4, true), closed)
             }
-            b"ORIENTED_EDGE" => Err(damage("an oriented edge is given where a plain edge is expected")),
+            b"ORIENTED_EDGE" => Err(defect("an oriented edge is given where a plain edge is expected")),
             b"SUBEDGE" => self.edge_between(row.entity(3)?, [row.entity(1)?, row.entity(2)?]),
             b"EDGE" => {
                 let ends = [self.vertex(row.entity(1)?)?, self.vertex(row.entity(2)?)?];
                 Ok(build::line(ends[0], ends[1], self.origin)?)
             }
-            _ => Err(damage(format!("{} is not an edge", self.said(k)))),
+            _ => Err(defect(format!("{} is not an edge", self.label(k)))),
         }
     }
 
-    fn edge_between(&mut self, parent: u32, [first, last]: [u32; 2]) -> Result<Curve, Damage> {
+    fn edge_between(&mut self, parent: u32, [first, last]: [u32; 2]) -> Result<Curve, Defect> {
         if self.file.name(parent) != b"EDGE_CURVE" {
-            return Err(damage(format!("{} is not an edge with a curve", self.said(parent))));
+            return Err(defect(format!("{} is not an edge with a curve", self.label(parent))));
         }
         let ends = [self.vertex(first)?, self.vertex(last)?];
         let whole = self.edge(parent)?;

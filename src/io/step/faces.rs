@@ -7,14 +7,14 @@ use crate::geometry::Curve;
 use crate::geometry::construct::build;
 use crate::io::cad::base_surface::Base;
 use crate::io::cad::border::{Border, backwards, pieces};
-use crate::io::cad::damage::{Damage, damage};
+use crate::io::cad::defect::{Defect, defect};
 use crate::io::cad::face::{Face, Known, least_area};
 use crate::io::cad::face_loops::FaceLoops;
 use crate::io::step::reader::{NESTED, Step};
 
 impl Step<'_> {
     /// The face that an entity is, looking the other way where it is `turned`.
-    pub fn face(&mut self, k: u32, turned: bool) -> Result<Face, Damage> {
+    pub fn face(&mut self, k: u32, turned: bool) -> Result<Face, Defect> {
         self.spanned = 0.0;
         let (mut k, mut turned) = (k, turned);
         for _ in 0..NESTED {
@@ -24,7 +24,7 @@ impl Step<'_> {
                     turned ^= !row.flag(3, true);
                     k = row.entity(2)?;
                 }
-                b"SUBFACE" => return Err(damage(format!("{} is a part of a face", self.said(k)))),
+                b"SUBFACE" => return Err(defect(format!("{} is a part of a face", self.label(k)))),
                 b"ADVANCED_FACE" | b"FACE_SURFACE" => {
                     let row = self.file.parameters(k);
                     let same = row.flag(3, true);
@@ -34,18 +34,18 @@ impl Step<'_> {
                 b"FACE" => return self.bounded_face(&self.file.parameters(k).entities(1)?, None, true, turned),
                 _ if self.file.under(k, b"FACE_SURFACE").is_some() => {
                     let (Some(own), Some(of)) = (self.file.under(k, b"FACE_SURFACE"), self.file.under(k, b"FACE")) else {
-                        return Err(damage("it has no loops"));
+                        return Err(defect("it has no loops"));
                     };
                     return self.bounded_face(&of.entities(0)?, Some(own.entity(0)?), own.flag(1, true), turned);
                 }
-                _ => return Err(damage(format!("{} is not a face", self.said(k)))),
+                _ => return Err(defect(format!("{} is not a face", self.label(k)))),
             }
         }
-        Err(damage("faces are nested too deep, or are made of themselves"))
+        Err(defect("faces are nested too deep, or are made of themselves"))
     }
 
     /// A face of bounds; one without a surface lies in the plane of its points.
-    fn bounded_face(&mut self, bounds: &[u32], surface: Option<u32>, same: bool, turned: bool) -> Result<Face, Damage> {
+    fn bounded_face(&mut self, bounds: &[u32], surface: Option<u32>, same: bool, turned: bool) -> Result<Face, Defect> {
         let mut loops: Vec<Vec<Border>> = Vec::with_capacity(bounds.len());
         let mut vertices = Vec::new();
         let mut outer = 0;
@@ -54,9 +54,9 @@ impl Step<'_> {
             let row = self.file.parameters(*bound);
             let name = self.file.name(*bound);
             if !matches!(name, b"FACE_BOUND" | b"FACE_OUTER_BOUND") {
-                return Err(damage(format!("{} is not a bound of a face", self.said(*bound))));
+                return Err(defect(format!("{} is not a bound of a face", self.label(*bound))));
             }
-            let made = self.loop_of(row.entity(1)?).map_err(|Damage(why)| damage(format!("its bound #{}: {why}", self.file.id(*bound))))?;
+            let made = self.loop_of(row.entity(1)?).map_err(|Defect(why)| defect(format!("its bound #{}: {why}", self.file.id(*bound))))?;
             if made.is_empty() {
                 vertices.extend(self.vertex_of(row.entity(1)?));
                 continue;
@@ -73,7 +73,7 @@ impl Step<'_> {
         let around = FaceLoops::of(&loops, &vertices);
         self.also = Vec::new();
         let base = match surface {
-            Some(of) => self.base(of, &around, 0).map_err(|Damage(why)| damage(format!("its surface {}: {why}", self.said(of))))?,
+            Some(of) => self.base(of, &around, 0).map_err(|Defect(why)| defect(format!("its surface {}: {why}", self.label(of))))?,
             None => plane_of(loops.first().map_or(&[], Vec::as_slice))?,
         };
         let mut made = if loops.is_empty() {
@@ -95,13 +95,13 @@ impl Step<'_> {
     }
 
     /// The curves of a loop; none for a vertex.
-    fn loop_of(&mut self, k: u32) -> Result<Vec<Border>, Damage> {
+    fn loop_of(&mut self, k: u32) -> Result<Vec<Border>, Defect> {
         let row = self.file.parameters(k);
         let of = |curve: &Curve| pieces(curve).into_iter().map(|space| Border { space, uv: None }).collect::<Vec<Border>>();
         match self.file.name(k) {
             b"VERTEX_LOOP" => Ok(Vec::new()),
             b"POLY_LOOP" => {
-                let points = row.entities(1)?.into_iter().map(|p| self.point(p)).collect::<Result<Vec<DVec3>, Damage>>()?;
+                let points = row.entities(1)?.into_iter().map(|p| self.point(p)).collect::<Result<Vec<DVec3>, Defect>>()?;
                 let n = points.len();
                 let sides = (0..n).map(|i| (points[i], points[(i + 1) % n])).filter(|(a, b)| a != b);
                 sides.map(|(a, b)| Ok(Border { space: build::line(a, b, self.origin)?, uv: None })).collect()
@@ -121,16 +121,16 @@ impl Step<'_> {
                 }
                 Ok(borders)
             }
-            _ => Err(damage(format!("{} is not a loop", self.said(k)))),
+            _ => Err(defect(format!("{} is not a loop", self.label(k)))),
         }
     }
 
     /// The curves of an edge in the direction of its loop.
-    fn used(&mut self, oriented: u32, of: &dyn Fn(&Curve) -> Vec<Border>) -> Result<Vec<Border>, Damage> {
+    fn used(&mut self, oriented: u32, of: &dyn Fn(&Curve) -> Vec<Border>) -> Result<Vec<Border>, Defect> {
         let (mut k, mut ahead) = (oriented, true);
         for _ in 0..NESTED {
             if self.file.name(k) != b"ORIENTED_EDGE" {
-                let curve = self.edge(k).map_err(|Damage(why)| damage(format!("its edge #{}: {why}", self.file.id(k))))?;
+                let curve = self.edge(k).map_err(|Defect(why)| defect(format!("its edge #{}: {why}", self.file.id(k))))?;
                 self.spend(1)?;
                 return Ok(if ahead { of(&curve) } else { backwards(of(&curve)) });
             }
@@ -138,13 +138,13 @@ impl Step<'_> {
             ahead ^= !row.flag(4, true);
             k = row.entity(3)?;
         }
-        Err(damage(format!("#{} is made of itself", self.file.id(oriented))))
+        Err(defect(format!("#{} is made of itself", self.file.id(oriented))))
     }
 
     /// A surface that entities of several kinds may be: whole, between parameters, or inside curves.
-    pub fn sheet(&mut self, k: u32, depth: usize) -> Result<Face, Damage> {
+    pub fn sheet(&mut self, k: u32, depth: usize) -> Result<Face, Defect> {
         if depth > NESTED {
-            return Err(damage("surfaces are nested too deep, or are made of themselves"));
+            return Err(defect("surfaces are nested too deep, or are made of themselves"));
         }
         let row = self.file.parameters(k);
         match self.file.name(k) {
@@ -178,10 +178,10 @@ impl Step<'_> {
 }
 
 /// The plane of a loop's points, which see it counter-clockwise.
-fn plane_of(borders: &[Border]) -> Result<Base, Damage> {
+fn plane_of(borders: &[Border]) -> Result<Base, Defect> {
     let at = borders.first().map_or(DVec3::ZERO, |b| b.space.start());
     let twice = |b: &Border| (b.space.start() - at).cross(b.space.end() - at);
-    let normal = math::unit(borders.iter().map(twice).sum(), 0.0).ok_or_else(|| damage("its loop has no plane"))?;
+    let normal = math::unit(borders.iter().map(twice).sum(), 0.0).ok_or_else(|| defect("its loop has no plane"))?;
     let first = math::any_normal(normal);
     Ok(Base::Plane(at, first, normal.cross(first)))
 }

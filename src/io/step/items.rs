@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use crate::base::job;
 use crate::geometry::Curve;
-use crate::io::cad::damage::{Damage, damage};
+use crate::io::cad::defect::{Defect, defect};
 use crate::io::cad::face::Face;
 use crate::io::step::parameters::Row;
 use crate::io::step::reader::{NESTED, Step};
@@ -86,7 +86,7 @@ impl<'f> Step<'f> {
     /// What an item is made of; what cannot be read is left out with a warning.
     pub fn item(&mut self, k: u32, unread: &mut Unread) -> Item {
         let mut item = Item::default();
-        if let Err(Damage(why)) = self.add(k, &mut item, unread, 0) {
+        if let Err(Defect(why)) = self.add(k, &mut item, unread, 0) {
             self.left_out(k, why);
         }
         item
@@ -103,9 +103,9 @@ impl<'f> Step<'f> {
         }
     }
 
-    fn add(&mut self, k: u32, item: &mut Item, unread: &mut Unread, depth: usize) -> Result<(), Damage> {
+    fn add(&mut self, k: u32, item: &mut Item, unread: &mut Unread, depth: usize) -> Result<(), Defect> {
         if depth > NESTED {
-            return Err(damage("items are nested too deep, or are made of themselves"));
+            return Err(defect("items are nested too deep, or are made of themselves"));
         }
         let file = self.file;
         let row = file.parameters(k);
@@ -125,7 +125,7 @@ impl<'f> Step<'f> {
             }
             b"GEOMETRIC_SET" | b"GEOMETRIC_CURVE_SET" => {
                 for member in self.members(k, row.list(1)?) {
-                    if let Err(Damage(why)) = self.member(member, item, unread, depth + 1) {
+                    if let Err(Defect(why)) = self.member(member, item, unread, depth + 1) {
                         self.left_out(member, why);
                     }
                 }
@@ -147,7 +147,7 @@ impl<'f> Step<'f> {
     }
 
     /// A point, curve, surface or face.
-    fn member(&mut self, k: u32, item: &mut Item, unread: &mut Unread, depth: usize) -> Result<(), Damage> {
+    fn member(&mut self, k: u32, item: &mut Item, unread: &mut Unread, depth: usize) -> Result<(), Defect> {
         let name = self.file.name(k);
         let ends = |word: &[u8]| self.file.names(k).any(|n| n.ends_with(word));
         match name {
@@ -190,12 +190,12 @@ impl<'f> Step<'f> {
     }
 
     /// A solid: its outer shell, then its voids.
-    fn solid(&mut self, k: u32, item: &mut Item) -> Result<(), Damage> {
+    fn solid(&mut self, k: u32, item: &mut Item) -> Result<(), Defect> {
         let from = item.now();
         let place = item.bundles.len();
         let file = self.file;
         let (outer, voids) = if file.is_complex(k) {
-            let outer = file.under(k, b"MANIFOLD_SOLID_BREP").ok_or_else(|| damage("it has no shell"))?.entity(0)?;
+            let outer = file.under(k, b"MANIFOLD_SOLID_BREP").ok_or_else(|| defect("it has no shell"))?.entity(0)?;
             (outer, file.under(k, b"BREP_WITH_VOIDS").map_or(Ok(Vec::new()), |r| r.entities(0))?)
         } else {
             let row = file.parameters(k);
@@ -216,7 +216,7 @@ impl<'f> Step<'f> {
         for value in list.values() {
             match value.entity() {
                 Ok(k) => members.push(k),
-                Err(Damage(why)) => self.warn(of, format!("skipped: one of its members: {why}")),
+                Err(Defect(why)) => self.warn(of, format!("skipped: one of its members: {why}")),
             }
         }
         members
@@ -230,17 +230,17 @@ impl<'f> Step<'f> {
                     job::poll();
                     match self.face(face, turned) {
                         Ok(made) => item.faces.push((face, made, Some(shell))),
-                        Err(Damage(why)) => self.unusable(face, why),
+                        Err(Defect(why)) => self.unusable(face, why),
                     }
                 }
                 item.bundle(sort, shell, from);
             }
-            Err(Damage(why)) => self.unusable(k, why),
+            Err(Defect(why)) => self.unusable(k, why),
         }
     }
 
     /// The shell that has the faces, the faces, and whether they look the other way.
-    fn faces_of(&self, k: u32) -> Result<(u32, Row<'f>, bool), Damage> {
+    fn faces_of(&self, k: u32) -> Result<(u32, Row<'f>, bool), Defect> {
         let (mut k, mut turned) = (k, false);
         for _ in 0..NESTED {
             let row = self.file.parameters(k);
@@ -250,9 +250,9 @@ impl<'f> Step<'f> {
                     k = row.entity(2)?;
                 }
                 b"OPEN_SHELL" | b"CLOSED_SHELL" | b"CONNECTED_FACE_SET" => return Ok((k, row.list(1)?, turned)),
-                _ => return Err(damage(format!("{} is not a shell", self.said(k)))),
+                _ => return Err(defect(format!("{} is not a shell", self.label(k)))),
             }
         }
-        Err(damage("shells are made of themselves"))
+        Err(defect("shells are made of themselves"))
     }
 }

@@ -1,6 +1,6 @@
 //! Values of parameter lists, with what is wrong with them in words.
 
-use crate::io::cad::damage::{Damage, damage};
+use crate::io::cad::defect::{Defect, defect};
 use crate::io::step::records::{File, Kind, Piece, Token};
 use crate::io::step::strings::decoded;
 
@@ -56,17 +56,17 @@ impl<'f> Row<'f> {
         self.values().nth(k)
     }
 
-    fn value(self, k: usize) -> Result<Value<'f>, Damage> {
-        self.get(k).ok_or_else(|| damage(format!("its parameter {} is missing", k + 1)))
+    fn value(self, k: usize) -> Result<Value<'f>, Defect> {
+        self.get(k).ok_or_else(|| defect(format!("its parameter {} is missing", k + 1)))
     }
 
     /// The entity at `k`.
-    pub fn entity(self, k: usize) -> Result<u32, Damage> {
-        self.value(k)?.entity().map_err(|Damage(why)| damage(format!("its parameter {}: {why}", k + 1)))
+    pub fn entity(self, k: usize) -> Result<u32, Defect> {
+        self.value(k)?.entity().map_err(|Defect(why)| defect(format!("its parameter {}: {why}", k + 1)))
     }
 
     /// The entity at `k`, none for `$` and `*`.
-    pub fn maybe(self, k: usize) -> Result<Option<u32>, Damage> {
+    pub fn maybe(self, k: usize) -> Result<Option<u32>, Defect> {
         match self.get(k) {
             Some(value) if !value.is_none() => value.entity().map(Some),
             _ => Ok(None),
@@ -74,33 +74,33 @@ impl<'f> Row<'f> {
     }
 
     /// The entities of the list at `k`.
-    pub fn entities(self, k: usize) -> Result<Vec<u32>, Damage> {
-        self.list(k)?.values().map(Value::entity).collect::<Result<Vec<u32>, Damage>>()
+    pub fn entities(self, k: usize) -> Result<Vec<u32>, Defect> {
+        self.list(k)?.values().map(Value::entity).collect::<Result<Vec<u32>, Defect>>()
     }
 
     /// The list at `k`.
-    pub fn list(self, k: usize) -> Result<Row<'f>, Damage> {
+    pub fn list(self, k: usize) -> Result<Row<'f>, Defect> {
         let value = self.value(k)?;
-        value.list().ok_or_else(|| damage(format!("its parameter {} is not a list", k + 1)))
+        value.list().ok_or_else(|| defect(format!("its parameter {} is not a list", k + 1)))
     }
 
     /// The number at `k`.
-    pub fn number(self, k: usize) -> Result<f64, Damage> {
-        self.value(k)?.number().map_err(|Damage(why)| damage(format!("its parameter {}: {why}", k + 1)))
+    pub fn number(self, k: usize) -> Result<f64, Defect> {
+        self.value(k)?.number().map_err(|Defect(why)| defect(format!("its parameter {}: {why}", k + 1)))
     }
 
     /// The numbers of the list at `k`.
-    pub fn numbers(self, k: usize) -> Result<Vec<f64>, Damage> {
+    pub fn numbers(self, k: usize) -> Result<Vec<f64>, Defect> {
         self.list(k)?.values().map(Value::number).collect()
     }
 
     /// The whole number from 0 at `k`.
-    pub fn count(self, k: usize) -> Result<usize, Damage> {
+    pub fn count(self, k: usize) -> Result<usize, Defect> {
         let x = self.number(k)?;
         if x >= 0.0 && x <= f64::from(u32::MAX) && x.trunc() == x {
             Ok(x as usize)
         } else {
-            Err(damage(format!("{x} is not a valid count")))
+            Err(defect(format!("{x} is not a valid count")))
         }
     }
 
@@ -140,12 +140,12 @@ impl<'f> Value<'f> {
     }
 
     /// The record it refers to.
-    pub fn entity(self) -> Result<u32, Damage> {
+    pub fn entity(self) -> Result<u32, Defect> {
         let token = self.token();
         match token.kind {
             Kind::Ref if token.end != Token::NONE => Ok(token.end),
-            Kind::Ref => Err(damage(format!("there is no entity #{}", token.start))),
-            _ => Err(damage("an entity is missing")),
+            Kind::Ref => Err(defect(format!("there is no entity #{}", token.start))),
+            _ => Err(defect("an entity is missing")),
         }
     }
 
@@ -156,22 +156,22 @@ impl<'f> Value<'f> {
     }
 
     /// The number it is, with or without a name before it.
-    pub fn number(self) -> Result<f64, Damage> {
+    pub fn number(self) -> Result<f64, Defect> {
         match self.token().kind {
             Kind::Number => {
                 let text = std::str::from_utf8(self.span()).unwrap_or_default();
                 let x: Result<f64, _> = text.parse();
                 match x {
                     Ok(x) if x.is_finite() => Ok(x),
-                    Ok(_) => Err(damage(format!("the number {text} is too large"))),
-                    Err(_) => Err(damage(format!("`{text}` is not a number"))),
+                    Ok(_) => Err(defect(format!("the number {text} is too large"))),
+                    Err(_) => Err(defect(format!("`{text}` is not a number"))),
                 }
             }
             Kind::Typed => match self.list().and_then(|row| row.get(0)) {
                 Some(inner) if inner.token().kind == Kind::Number => inner.number(),
-                _ => Err(damage("a number is missing")),
+                _ => Err(defect("a number is missing")),
             },
-            _ => Err(damage("a number is missing")),
+            _ => Err(defect("a number is missing")),
         }
     }
 

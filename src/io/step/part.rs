@@ -7,7 +7,7 @@ use glam::DVec3;
 use crate::base::tolerance::Tolerance;
 use crate::base::{job, limits};
 use crate::geometry::Motion;
-use crate::io::cad::damage::Damage;
+use crate::io::cad::defect::Defect;
 use crate::io::cad::part::{Figure, Group, Item, Names, Part, Place, Shades, Stated};
 use crate::io::files::fault::Malformed;
 use crate::io::step::assembly::{Assembly, Instance, Placed};
@@ -15,7 +15,7 @@ use crate::io::step::items::{Bundle, Item as Shape, Sort, Unread};
 use crate::io::step::open::Opened;
 use crate::io::step::reader::Step;
 use crate::io::step::records::File;
-use crate::io::step::styles::{Color, Looks};
+use crate::io::step::styles::{Color, StyleTable};
 use crate::io::step::units::Units;
 use crate::io::step::validation::{self, Given, Of};
 
@@ -27,8 +27,8 @@ impl Opened<'_> {
         step.tolerance = tolerance;
         step.warnings = warnings;
         let unit = assembly.placed.first().map_or(Units::NONE, |p| p.units).name();
-        let maker = Maker {
-            looks: Looks::of(&file),
+        let builder = PartBuilder {
+            styles: StyleTable::of(&file),
             step,
             part: Part { unit, mark: "#", model_unit: options.unit, ..Part::default() },
             names: Names::default(),
@@ -38,13 +38,13 @@ impl Opened<'_> {
             single: vec![None; assembly.instances.len()],
             slack: 0.0,
         };
-        maker.run(&assembly)
+        builder.run(&assembly)
     }
 }
 
-struct Maker<'f> {
+struct PartBuilder<'f> {
     step: Step<'f>,
-    looks: Looks,
+    styles: StyleTable,
     part: Part,
     names: Names,
     shades: Shades,
@@ -64,7 +64,7 @@ fn given(name: String) -> Option<String> {
     (!name.is_empty() && name != "NONE").then(|| name.to_owned())
 }
 
-impl Maker<'_> {
+impl PartBuilder<'_> {
     fn run(mut self, assembly: &Assembly) -> Part {
         let mut unread = Unread::new();
         let mut shapes: BTreeMap<u32, (Units, Shape)> = BTreeMap::new();
@@ -89,7 +89,7 @@ impl Maker<'_> {
                     self.step.item(placed.item, &mut unread)
                 }
             };
-            if let Err(Damage(why)) = self.step.spend(shape.weight()) {
+            if let Err(Defect(why)) = self.step.spend(shape.weight()) {
                 self.step.warn(placed.item, format!("skipped: {why}"));
                 break;
             }
@@ -123,13 +123,13 @@ impl Maker<'_> {
         let (points, curves, faces) = (self.part.points.len(), self.part.curves.len(), self.part.surfaces.len());
         let (solid, way) = (placed.item, assembly.way(placed));
         for (entity, p) in shape.points {
-            let color = self.looks.curve(&[entity, solid], &way).cloned();
+            let color = self.styles.curve(&[entity, solid], &way).cloned();
             let at = Place::Point(self.part.points.len());
             let item = self.named(entity, "point", self.part.points.len(), color, at, vec![placed.motion.point(p)]);
             self.part.points.push(item);
         }
         for (entity, curve) in shape.curves {
-            let color = self.looks.curve(&[entity, solid], &way).cloned();
+            let color = self.styles.curve(&[entity, solid], &way).cloned();
             let curve = if still { curve } else { curve.moved(&placed.motion) };
             if curve.length() <= self.step.tolerance.point {
                 self.step.warn(entity, "skipped: it is shorter than the tolerance");
@@ -140,7 +140,7 @@ impl Maker<'_> {
             self.part.curves.push(item);
         }
         for (entity, face, shell) in shape.faces {
-            let color = self.looks.surface(&[entity, shell.unwrap_or(entity), solid], &way).cloned();
+            let color = self.styles.surface(&[entity, shell.unwrap_or(entity), solid], &way).cloned();
             let at = Place::Surface(self.part.surfaces.len());
             let face = if still { face } else { face.moved(&placed.motion) };
             let item = self.named(entity, "surface", self.part.surfaces.len(), color, at, face);
@@ -276,7 +276,7 @@ impl Maker<'_> {
                     let faces = made.filter_map(|at| if let Place::Surface(k) = at { Some(*k) } else { None }).collect();
                     let copies = items.iter().filter_map(|item| uses.get(item)).copied().max().unwrap_or(1);
                     let placed = assembly.placed.iter().find(|p| items.contains(&p.item));
-                    (faces, copies, placed, items.first().map_or(String::new(), |item| self.step.said(*item)))
+                    (faces, copies, placed, items.first().map_or(String::new(), |item| self.step.label(*item)))
                 }
             };
             surfaces.sort_unstable();
@@ -301,7 +301,7 @@ impl Maker<'_> {
 
     /// A group for each layer.
     fn layers(&mut self) {
-        for (k, name, items) in std::mem::take(&mut self.looks.layers) {
+        for (k, name, items) in std::mem::take(&mut self.styles.layers) {
             let mut group = Group::default();
             for item in items {
                 self.made.get(&item).into_iter().flatten().for_each(|at| group.put(*at));

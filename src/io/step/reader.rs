@@ -9,7 +9,7 @@ use crate::base::tolerance::{PARALLEL, Tolerance};
 use crate::base::{limits, math};
 use crate::geometry::{Curve, Motion};
 use crate::io::cad::base_surface::Base;
-use crate::io::cad::damage::{Damage, damage};
+use crate::io::cad::defect::{Defect, defect};
 use crate::io::cad::part::{Options, Unusable};
 use crate::io::files::fault::Malformed;
 use crate::io::step::records::File;
@@ -70,7 +70,7 @@ pub struct Step<'f> {
     /// What may still be copied.
     left: usize,
     /// Curves of edges made so far, in the units of now.
-    pub edges: BTreeMap<u32, Result<Curve, Damage>>,
+    pub edges: BTreeMap<u32, Result<Curve, Defect>>,
 }
 
 impl<'f> Step<'f> {
@@ -93,13 +93,13 @@ impl<'f> Step<'f> {
     }
 
     /// Takes `n` from what may be copied: pieces of curves, control points, faces.
-    pub fn spend(&mut self, n: usize) -> Result<(), Damage> {
+    pub fn spend(&mut self, n: usize) -> Result<(), Defect> {
         match self.left.checked_sub(n) {
             Some(left) => {
                 self.left = left;
                 Ok(())
             }
-            None => Err(damage("it repeats other entities more often than a file of this size may")),
+            None => Err(defect("it repeats other entities more often than a file of this size may")),
         }
     }
 
@@ -119,7 +119,7 @@ impl<'f> Step<'f> {
     }
 
     /// The number and name of an entity, for messages.
-    pub fn said(&self, k: u32) -> String {
+    pub fn label(&self, k: u32) -> String {
         format!("#{} {}", self.file.id(k), String::from_utf8_lossy(self.file.name(k)))
     }
 
@@ -127,7 +127,7 @@ impl<'f> Step<'f> {
     pub fn warn(&mut self, k: u32, what: impl std::fmt::Display) {
         let name = self.file.parameters(k).text(0);
         let name = if name.is_empty() { name } else { format!(" '{name}'") };
-        let what = format!("{}{name}: {what}", self.said(k));
+        let what = format!("{}{name}: {what}", self.label(k));
         self.warnings.push(Malformed::line(self.file.line(k), what));
     }
 
@@ -135,7 +135,7 @@ impl<'f> Step<'f> {
     pub fn unusable(&mut self, k: u32, cause: String) {
         let name = self.file.parameters(k).text(0);
         let name = if name.is_empty() { name } else { format!(" '{name}'") };
-        let entity = format!("{}{name}", self.said(k));
+        let entity = format!("{}{name}", self.label(k));
         self.unusable.push(Unusable { face: None, entity, line: self.file.line(k), cause, least_area: std::mem::take(&mut self.spanned) });
     }
 
@@ -144,50 +144,50 @@ impl<'f> Step<'f> {
         format!("{x:.1e} {}", self.options.unit)
     }
 
-    fn three(&self, k: u32, what: &[u8], word: &str) -> Result<DVec3, Damage> {
-        let Some(row) = self.file.under(k, what) else { return Err(damage(format!("{} is not a {word}", self.said(k)))) };
+    fn three(&self, k: u32, what: &[u8], word: &str) -> Result<DVec3, Defect> {
+        let Some(row) = self.file.under(k, what) else { return Err(defect(format!("{} is not a {word}", self.label(k)))) };
         let list = row.list(if self.file.is_complex(k) { 0 } else { 1 })?;
         let mut p = DVec3::ZERO;
         for (axis, value) in list.values().take(3).enumerate() {
-            p[axis] = value.number().map_err(|Damage(why)| damage(format!("{}: {why}", self.said(k))))?;
+            p[axis] = value.number().map_err(|Defect(why)| defect(format!("{}: {why}", self.label(k))))?;
         }
         Ok(p)
     }
 
     /// A point in model units; one of two coordinates lies in z = 0.
-    pub fn point(&self, k: u32) -> Result<DVec3, Damage> {
+    pub fn point(&self, k: u32) -> Result<DVec3, Defect> {
         Ok(self.three(k, b"CARTESIAN_POINT", "point")? * self.scale)
     }
 
     /// A unit vector.
-    pub fn direction(&self, k: u32) -> Result<DVec3, Damage> {
+    pub fn direction(&self, k: u32) -> Result<DVec3, Defect> {
         let v = self.three(k, b"DIRECTION", "direction")?;
-        math::unit(v, 0.0).ok_or_else(|| damage(format!("{} has no length", self.said(k))))
+        math::unit(v, 0.0).ok_or_else(|| defect(format!("{} has no length", self.label(k))))
     }
 
     /// A vector in model units.
-    pub fn vector(&self, k: u32) -> Result<DVec3, Damage> {
-        let Some(row) = self.file.under(k, b"VECTOR") else { return Err(damage(format!("{} is not a vector", self.said(k)))) };
+    pub fn vector(&self, k: u32) -> Result<DVec3, Defect> {
+        let Some(row) = self.file.under(k, b"VECTOR") else { return Err(defect(format!("{} is not a vector", self.label(k)))) };
         Ok(self.direction(row.entity(1)?)? * (row.number(2)? * self.scale))
     }
 
     /// The point of a vertex.
-    pub fn vertex(&self, k: u32) -> Result<DVec3, Damage> {
-        let Some(row) = self.file.under(k, b"VERTEX_POINT") else { return Err(damage(format!("{} is not a vertex", self.said(k)))) };
+    pub fn vertex(&self, k: u32) -> Result<DVec3, Defect> {
+        let Some(row) = self.file.under(k, b"VERTEX_POINT") else { return Err(defect(format!("{} is not a vertex", self.label(k)))) };
         self.point(row.entity(if self.file.is_complex(k) { 0 } else { 1 })?)
     }
 
     /// A placement in space or in a plane, or an axis alone.
-    pub fn frame(&self, k: u32) -> Result<Frame, Damage> {
+    pub fn frame(&self, k: u32) -> Result<Frame, Defect> {
         let row = self.file.parameters(k);
-        let inside = |Damage(why): Damage| damage(format!("{}: {why}", self.said(k)));
+        let inside = |Defect(why): Defect| defect(format!("{}: {why}", self.label(k)));
         let at = self.point(row.entity(1).map_err(inside)?)?;
         let direction = |n: usize| row.maybe(n).map_err(inside)?.map(|d| self.direction(d)).transpose();
         let (z, x) = match self.file.name(k) {
             b"AXIS2_PLACEMENT_3D" => (direction(2)?.unwrap_or(DVec3::Z), direction(3)?),
             b"AXIS1_PLACEMENT" => (direction(2)?.unwrap_or(DVec3::Z), None),
             b"AXIS2_PLACEMENT_2D" => (DVec3::Z, direction(2)?),
-            _ => return Err(damage(format!("{} is not a placement", self.said(k)))),
+            _ => return Err(defect(format!("{} is not a placement", self.label(k)))),
         };
         let x = x.and_then(|x| math::unit(x.reject_from_normalized(z), PARALLEL));
         let x = x.unwrap_or_else(|| math::unit(DVec3::X.reject_from_normalized(z), PARALLEL).unwrap_or(DVec3::Y));

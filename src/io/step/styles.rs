@@ -41,17 +41,17 @@ type Styles = BTreeMap<u32, Vec<Style>>;
 
 /// Colours of surfaces and of curves by the item that has them, and the members of layers.
 #[derive(Debug, Default)]
-pub struct Looks {
+pub struct StyleTable {
     surfaces: Styles,
     curves: Styles,
     /// Names of layers with their entity and items, in file order.
     pub layers: Vec<(u32, String, Vec<u32>)>,
 }
 
-impl Looks {
-    /// What a file says of looks.
+impl StyleTable {
+    /// What a file says of table.
     pub fn of(file: &File) -> Self {
-        let mut looks = Self::default();
+        let mut table = Self::default();
         let contexts = Contexts::of(file);
         for k in 0..file.records.len() as u32 {
             if k % 1024 == 0 {
@@ -59,17 +59,17 @@ impl Looks {
             }
             match file.name(k) {
                 b"STYLED_ITEM" | b"OVER_RIDING_STYLED_ITEM" | b"CONTEXT_DEPENDENT_OVER_RIDING_STYLED_ITEM" => {
-                    looks.style(file, &contexts, k);
+                    table.style(file, &contexts, k);
                 }
                 b"PRESENTATION_LAYER_ASSIGNMENT" => {
                     let row = file.parameters(k);
                     let items = row.list(2).map(|list| list.values().filter_map(|v| v.entity().ok()).collect());
-                    looks.layers.push((k, row.text(0), items.unwrap_or_default()));
+                    table.layers.push((k, row.text(0), items.unwrap_or_default()));
                 }
                 _ => {}
             }
         }
-        looks
+        table
     }
 
     fn style(&mut self, file: &File, contexts: &Contexts, k: u32) {
@@ -79,7 +79,7 @@ impl Looks {
         let item = if let [one] = contexts.meant(file, item)[..] { one } else { item };
         let over = row.entity(3).ok();
         let entities = |n: usize| row.list(n).map(|l| l.values().filter_map(|v| v.entity().ok()).collect::<Vec<u32>>()).unwrap_or_default();
-        let said = entities(4);
+        let contexts_of_item = entities(4);
         for (without, list) in [(b"CURVE_STYLE".as_slice(), &mut self.surfaces), (b"SURFACE_STYLE_USAGE", &mut self.curves)] {
             // One styled item may have a style for each of several contexts.
             for style in entities(1) {
@@ -88,7 +88,7 @@ impl Looks {
                 let inner = if of_context { own.entities(0).unwrap_or_default() } else { vec![style] };
                 let Some(color) = found(file, &inner, without) else { continue };
                 let context = own.entity(1).ok().filter(|_| of_context);
-                let mut meant: Vec<u32> = said.iter().copied().chain(context).flat_map(|k| contexts.meant(file, k)).collect();
+                let mut meant: Vec<u32> = contexts_of_item.iter().copied().chain(context).flat_map(|k| contexts.meant(file, k)).collect();
                 meant.sort_unstable();
                 meant.dedup();
                 let known = list.entry(item).or_default();

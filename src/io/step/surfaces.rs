@@ -9,7 +9,7 @@ use crate::geometry::shapes::nurbs::weighted;
 use crate::io::cad::base_surface::{BEYOND, Base};
 use crate::io::cad::control_nets::trimmed_net;
 use crate::io::cad::curves::check_weights;
-use crate::io::cad::damage::{Damage, damage};
+use crate::io::cad::defect::{Defect, defect};
 use crate::io::cad::face_loops::FaceLoops;
 use crate::io::step::conics::Endless;
 use crate::io::step::curves::Course;
@@ -20,9 +20,9 @@ use crate::surface::swept::revolve::Axis;
 
 impl Step<'_> {
     /// The surface that an entity is; one without ends reaches about as far as what lies on it.
-    pub fn base(&mut self, k: u32, loops: &FaceLoops, depth: usize) -> Result<Base, Damage> {
+    pub fn base(&mut self, k: u32, loops: &FaceLoops, depth: usize) -> Result<Base, Defect> {
         if depth > NESTED {
-            return Err(damage("surfaces are nested too deep, or are made of themselves"));
+            return Err(defect("surfaces are nested too deep, or are made of themselves"));
         }
         let file = self.file;
         let row = file.parameters(k);
@@ -30,7 +30,7 @@ impl Step<'_> {
         if file.under(k, b"B_SPLINE_SURFACE").is_some() || name.ends_with(b"_SURFACE_WITH_KNOTS") || is_knotless(name) {
             return self.net(k);
         }
-        let length = |step: &Self, n: usize| Ok::<f64, Damage>(row.number(n)? * step.scale);
+        let length = |step: &Self, n: usize| Ok::<f64, Defect>(row.number(n)? * step.scale);
         match name {
             b"PLANE" => {
                 let frame = self.frame(row.entity(1)?)?;
@@ -41,7 +41,7 @@ impl Step<'_> {
                 let radius = length(self, 2)?;
                 let slope = if name == b"CONICAL_SURFACE" { math::tan(row.number(3)? * self.units.radians) } else { 0.0 };
                 if radius < 0.0 || (radius == 0.0 && slope == 0.0) {
-                    return Err(damage("its radius must be above 0"));
+                    return Err(defect("its radius must be above 0"));
                 }
                 self.clear_of_axis(k, Base::Unbounded { axis: axis(&frame), radius, slope, reference: frame.x }, loops)
             }
@@ -49,7 +49,7 @@ impl Step<'_> {
                 let frame = self.frame(row.entity(1)?)?;
                 let radius = length(self, 2)?;
                 if radius <= 0.0 {
-                    return Err(damage("its radius must be above 0"));
+                    return Err(defect("its radius must be above 0"));
                 }
                 Base::sphere(&axis(&frame), radius, frame.x, self.origin)
             }
@@ -70,18 +70,18 @@ impl Step<'_> {
             }
             b"OFFSET_SURFACE" => self.beside(k, loops, depth),
             b"RECTANGULAR_TRIMMED_SURFACE" | b"CURVE_BOUNDED_SURFACE" | b"ORIENTED_SURFACE" | b"SURFACE_REPLICA" => {
-                Err(damage(format!("{} is given where a whole surface is expected", self.said(k))))
+                Err(defect(format!("{} is given where a whole surface is expected", self.label(k))))
             }
-            _ => Err(damage(format!("{} is not a surface that can be read", self.said(k)))),
+            _ => Err(defect(format!("{} is not a surface that can be read", self.label(k)))),
         }
     }
 
     /// The offset of a surface, along the normals of the file.
-    fn beside(&mut self, k: u32, loops: &FaceLoops, depth: usize) -> Result<Base, Damage> {
+    fn beside(&mut self, k: u32, loops: &FaceLoops, depth: usize) -> Result<Base, Defect> {
         let row = self.file.parameters(k);
         let (of, distance) = (row.entity(1)?, row.number(2)? * self.scale);
         let inner = self.file.parameters(of);
-        let grown = |radius: f64| if radius > 0.0 { Ok(radius) } else { Err(damage("its offset turns it inside out")) };
+        let grown = |radius: f64| if radius > 0.0 { Ok(radius) } else { Err(defect("its offset turns it inside out")) };
         match self.file.name(of) {
             b"SPHERICAL_SURFACE" => {
                 let frame = self.frame(inner.entity(1)?)?;
@@ -96,7 +96,7 @@ impl Step<'_> {
             _ => {}
         }
         if self.file.name(of) == b"RECTANGULAR_TRIMMED_SURFACE" && inner.flag(6, true) != inner.flag(7, true) {
-            return Err(damage(format!("{} is turned over by one of its senses", self.said(of))));
+            return Err(defect(format!("{} is turned over by one of its senses", self.label(of))));
         }
         let around = loops.beside(distance);
         let base = match self.file.name(of) {
@@ -104,7 +104,7 @@ impl Step<'_> {
             _ => self.base(of, &around, depth + 1)?,
         };
         if !std::mem::take(&mut self.also).is_empty() {
-            return Err(damage("its surface crosses its axis, and it is ambiguous which part is meant"));
+            return Err(defect("its surface crosses its axis, and it is ambiguous which part is meant"));
         }
         // The net of an extruded surface has the direction first, the file the curve.
         let distance = if matches!(base, Base::Swept { .. }) { -distance } else { distance };
@@ -116,7 +116,7 @@ impl Step<'_> {
         Ok(base)
     }
 
-    fn net(&mut self, k: u32) -> Result<Base, Damage> {
+    fn net(&mut self, k: u32) -> Result<Base, Defect> {
         let Netted { degree, knots, points, weights } = splines::surface(self, k)?;
         let counts = (points.len(), points[0].len());
         let weight = |i: usize, j: usize| weights.as_ref().map_or(1.0, |w| w[i][j]);
@@ -130,10 +130,10 @@ impl Step<'_> {
     }
 
     /// A torus; of one whose tube reaches over the axis the `outer` or the inner part, where the file says which.
-    fn torus(&mut self, k: u32, frame: &Frame, radii: [f64; 2], outer: Option<bool>, loops: &FaceLoops) -> Result<Base, Damage> {
+    fn torus(&mut self, k: u32, frame: &Frame, radii: [f64; 2], outer: Option<bool>, loops: &FaceLoops) -> Result<Base, Defect> {
         let [major, minor] = radii;
         if !(major >= 0.0 && minor > 0.0) {
-            return Err(damage("its radii must be above 0"));
+            return Err(defect("its radii must be above 0"));
         }
         let axis = axis(frame);
         if major > minor * (1.0 + EPSILON) {
@@ -147,21 +147,21 @@ impl Step<'_> {
         let circle = Endless::Ellipse(frame.at + frame.x * major, frame.x * minor, frame.z * minor);
         let (a, b) = if outer { (-meets, meets) } else { (meets, std::f64::consts::TAU - meets) };
         if b - a <= PARALLEL {
-            return Err(damage("nothing of it lies inside"));
+            return Err(defect("nothing of it lies inside"));
         }
         Ok(Base::Round { axis, profile: circle.part(a, b, self.origin)? })
     }
 
-    fn extruded(&mut self, of: &Course, along: DVec3, loops: &FaceLoops) -> Result<Base, Damage> {
-        let direction = math::unit(along, 0.0).ok_or_else(|| damage("it has no curve to sweep"))?;
+    fn extruded(&mut self, of: &Course, along: DVec3, loops: &FaceLoops) -> Result<Base, Defect> {
+        let direction = math::unit(along, 0.0).ok_or_else(|| defect("it has no curve to sweep"))?;
         if let Course::Endless(Endless::Line(p, d)) = of {
-            let first = math::unit(*d, 0.0).ok_or_else(|| damage("its line has no direction"))?;
-            let normal = math::unit(first.cross(direction), PARALLEL).ok_or_else(|| damage("its line is swept along itself"))?;
+            let first = math::unit(*d, 0.0).ok_or_else(|| defect("its line has no direction"))?;
+            let normal = math::unit(first.cross(direction), PARALLEL).ok_or_else(|| defect("its line is swept along itself"))?;
             return Ok(Base::Plane(*p, first, normal.cross(first)));
         }
         let reach = &loops.reach;
         if reach.is_empty() {
-            return Err(damage("it is swept infinitely far"));
+            return Err(defect("it is swept infinitely far"));
         }
         let profile = self.within(of, loops, direction)?;
         let (low, high) = reach.stretch(profile.start(), direction);
@@ -183,7 +183,7 @@ impl Step<'_> {
     }
 
     /// The stretch of a curve that is swept along a unit direction to reach loops: all of one with ends.
-    fn within(&mut self, of: &Course, loops: &FaceLoops, direction: DVec3) -> Result<Curve, Damage> {
+    fn within(&mut self, of: &Course, loops: &FaceLoops, direction: DVec3) -> Result<Curve, Defect> {
         match of {
             Course::Bounded(curve) => Ok(curve.clone()),
             Course::Endless(endless) if endless.closes() => endless.part(0.0, std::f64::consts::TAU, self.origin),
@@ -192,7 +192,7 @@ impl Step<'_> {
                 let (at, normal) = endless.plane();
                 let slope = direction.dot(normal);
                 if slope.abs() <= PARALLEL {
-                    return Err(damage("its curve is swept in its own plane"));
+                    return Err(defect("its curve is swept in its own plane"));
                 }
                 let (a, b) = Self::range(endless, loops.points().map(|p| p - direction * ((p - at).dot(normal) / slope)));
                 endless.part(a, b, self.origin)

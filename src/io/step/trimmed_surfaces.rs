@@ -6,7 +6,7 @@ use crate::geometry::construct::build;
 use crate::geometry::{Curve, Motion};
 use crate::io::cad::base_surface::Base;
 use crate::io::cad::control_nets::trimmed_net;
-use crate::io::cad::damage::{Damage, damage};
+use crate::io::cad::defect::{Defect, defect};
 use crate::io::cad::face::Face;
 use crate::io::cad::face_loops::FaceLoops;
 use crate::io::step::conics::Endless;
@@ -18,7 +18,7 @@ const TURN: f64 = std::f64::consts::TAU;
 
 impl Step<'_> {
     /// The part of a surface between two u and two v.
-    pub fn rectangle(&mut self, k: u32) -> Result<Face, Damage> {
+    pub fn rectangle(&mut self, k: u32) -> Result<Face, Defect> {
         let row = self.file.parameters(k);
         let base = self.within_parameters(k)?;
         let mut face = self.whole(&base, &FaceLoops::NONE)?;
@@ -27,7 +27,7 @@ impl Step<'_> {
     }
 
     /// The surface between its parameters, with its own normals.
-    pub fn within_parameters(&mut self, k: u32) -> Result<Base, Damage> {
+    pub fn within_parameters(&mut self, k: u32) -> Result<Base, Defect> {
         let row = self.file.parameters(k);
         let [u0, u1, v0, v1] = [row.number(2)?, row.number(3)?, row.number(4)?, row.number(5)?];
         self.also = Vec::new();
@@ -35,7 +35,7 @@ impl Step<'_> {
         self.clear_of_axis(k, base, &FaceLoops::NONE)
     }
 
-    fn between_parameters(&mut self, k: u32, [u0, u1, v0, v1]: [f64; 4]) -> Result<Base, Damage> {
+    fn between_parameters(&mut self, k: u32, [u0, u1, v0, v1]: [f64; 4]) -> Result<Base, Defect> {
         let row = self.file.parameters(k);
         let (length, angle) = (self.scale, self.units.radians);
         let ordered = |a: f64, b: f64| (a.min(b), a.max(b));
@@ -44,7 +44,7 @@ impl Step<'_> {
             let (a, b) = (a * angle, b * angle);
             let sweep = if b > a { b - a } else { b - a + TURN };
             if !(sweep > 0.0 && sweep <= TURN * (1.0 + NUDGE)) {
-                return Err(damage(format!("its angles run from {a} to {b}, which is not part of a turn")));
+                return Err(defect(format!("its angles run from {a} to {b}, which is not part of a turn")));
             }
             Ok((a, if sweep >= TURN * (1.0 - EPSILON) { a + TURN } else { a + sweep }))
         };
@@ -91,17 +91,17 @@ impl Step<'_> {
                     let share = |x: f64, a: f64, b: f64| ((x - a) / (b - a)).clamp(0.0, 1.0);
                     let range = [share(u0, a, b), share(u1, a, b), share(v0, c, d), share(v1, c, d)];
                     if range[0] >= range[1] || range[2] >= range[3] {
-                        return Err(damage("nothing of its surface lies between its parameters"));
+                        return Err(defect("nothing of its surface lies between its parameters"));
                     }
                     Ok(Base::Net(trimmed_net(net, range)?, [u0, u1, v0, v1]))
                 }
-                _ => Err(damage("its surface has no parameters that can be read")),
+                _ => Err(defect("its surface has no parameters that can be read")),
             },
         }
     }
 
     /// The stretch of a curve between two of the file's parameters.
-    fn over(&mut self, of: &Course, a: f64, b: f64) -> Result<Curve, Damage> {
+    fn over(&mut self, of: &Course, a: f64, b: f64) -> Result<Curve, Defect> {
         match of {
             Course::Endless(endless) => {
                 let unit = if endless.closes() { self.units.radians } else { 1.0 };

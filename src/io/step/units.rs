@@ -1,7 +1,7 @@
 //! Units of lengths and angles, and the distance within which points are one, by the context of a representation.
 
 use crate::base::tolerance::WHOLE_NUMBER;
-use crate::io::cad::damage::{Damage, damage};
+use crate::io::cad::defect::{Defect, defect};
 use crate::io::step::parameters::Row;
 use crate::io::step::records::File;
 
@@ -42,7 +42,7 @@ pub fn of_context(file: &File, context: u32, warn: &mut dyn FnMut(u32, String)) 
                 Ok((Kind::Length, mm)) => units.millimetres = Some(mm),
                 Ok((Kind::Angle, radians)) => units.radians = radians,
                 Ok((Kind::Other, _)) => {}
-                Err(Damage(why)) => warn(unit, format!("the unit cannot be read: {why}")),
+                Err(Defect(why)) => warn(unit, format!("the unit cannot be read: {why}")),
             }
         }
     }
@@ -72,12 +72,12 @@ enum Kind {
 }
 
 /// What a unit measures, in millimetres or radians.
-fn size(file: &File, unit: u32, depth: usize) -> Result<(Kind, f64), Damage> {
+fn size(file: &File, unit: u32, depth: usize) -> Result<(Kind, f64), Defect> {
     if depth > NESTED {
-        return Err(damage("units are defined by each other"));
+        return Err(defect("units are defined by each other"));
     }
     let checked = |kind: Kind, x: f64| {
-        if x > 0.0 && x.is_finite() { Ok((kind, x)) } else { Err(damage(format!("its size is {x}"))) }
+        if x > 0.0 && x.is_finite() { Ok((kind, x)) } else { Err(defect(format!("its size is {x}"))) }
     };
     if let Some(row) = file.under(unit, b"SI_UNIT") {
         // A simple entity has its dimensions first.
@@ -100,7 +100,7 @@ fn size(file: &File, unit: u32, depth: usize) -> Result<(Kind, f64), Damage> {
     Ok((Kind::Other, 1.0))
 }
 
-fn prefix(word: &[u8]) -> Result<f64, Damage> {
+fn prefix(word: &[u8]) -> Result<f64, Defect> {
     Ok(match word {
         b"EXA" => 1e18,
         b"PETA" => 1e15,
@@ -118,6 +118,6 @@ fn prefix(word: &[u8]) -> Result<f64, Damage> {
         b"PICO" => 1.0 / 1e12,
         b"FEMTO" => 1.0 / 1e15,
         b"ATTO" => 1.0 / 1e18,
-        _ => return Err(damage(format!("there is no prefix {}", String::from_utf8_lossy(word)))),
+        _ => return Err(defect(format!("there is no prefix {}", String::from_utf8_lossy(word)))),
     })
 }

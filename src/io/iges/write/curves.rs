@@ -6,23 +6,23 @@ use crate::base::tolerance::{EPSILON, PARALLEL};
 use crate::geometry::curves::curve::Shape;
 use crate::geometry::shapes::arc::EllipticArc;
 use crate::geometry::{Curve, Nurbs};
-use crate::io::cad::damage::Damage;
+use crate::io::cad::defect::Defect;
 use crate::io::iges::entity_writer::{Role, Values};
-use crate::io::iges::write::maker::Maker;
+use crate::io::iges::write::file_builder::FileBuilder;
 
-impl Maker<'_> {
+impl FileBuilder<'_> {
     /// A curve in space, scaled; or in (u, v), as it is.
-    pub(super) fn curve(&mut self, curve: &Curve, role: Role, scaled: bool) -> Result<u32, Damage> {
+    pub(super) fn curve(&mut self, curve: &Curve, role: Role, scaled: bool) -> Result<u32, Defect> {
         if let Some(composite) = curve.composite() {
             let inner = if role == Role::InUv { Role::InUv } else { Role::Part };
-            let pieces = composite.pieces.iter().map(|piece| self.curve(piece, inner, scaled)).collect::<Result<Vec<u32>, Damage>>()?;
+            let pieces = composite.pieces.iter().map(|piece| self.curve(piece, inner, scaled)).collect::<Result<Vec<u32>, Defect>>()?;
             return Ok(self.sheet.add(102, 0, role, Values::new().int(pieces.len() as u32).ints(pieces)));
         }
         self.piece(curve, role, scaled)
     }
 
     /// One entity, of a curve in a row as well.
-    pub(super) fn piece(&mut self, curve: &Curve, role: Role, scaled: bool) -> Result<u32, Damage> {
+    pub(super) fn piece(&mut self, curve: &Curve, role: Role, scaled: bool) -> Result<u32, Defect> {
         let scale = if scaled { self.scale.model } else { 1.0 };
         match curve.shape() {
             Shape::Line(a, b) => Ok(self.sheet.add(110, 0, role, Values::new().point(*a / scale).point(*b / scale))),

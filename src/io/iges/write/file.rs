@@ -3,10 +3,10 @@
 use std::io::{self, Write};
 
 use crate::base::job;
-use crate::io::cad::damage::Damage;
+use crate::io::cad::defect::Defect;
 use crate::io::files::loss::Loss;
 use crate::io::iges::entity_writer::{Role, Sheet, Values, counted, real};
-use crate::io::iges::write::maker::Maker;
+use crate::io::iges::write::file_builder::FileBuilder;
 use crate::io::iges::write::things::{Scale, Shown, Thing};
 
 /// Flag and name of the units that scripts know.
@@ -15,26 +15,26 @@ const UNITS: &[(&str, i64, &str)] =
 
 /// Makes the file of things; fails for a thing that the format or the tolerance cannot hold, with its name.
 pub fn sheet(things: &[Thing], scale: &Scale) -> Result<Sheet, String> {
-    let mut maker = Maker { sheet: Sheet::default(), scale, off: 0.0, sampled: false, left_out: Vec::new() };
-    maker.sheet.layers(things.iter().flat_map(Thing::all_layers));
-    maker.sheet.keep(things.iter().flat_map(|thing| [thing.name.as_str(), thing.group.as_str()]));
+    let mut builder = FileBuilder { sheet: Sheet::default(), scale, off: 0.0, sampled: false, left_out: Vec::new() };
+    builder.sheet.layers(things.iter().flat_map(Thing::all_layers));
+    builder.sheet.keep(things.iter().flat_map(|thing| [thing.name.as_str(), thing.group.as_str()]));
     let mut groups: Vec<(&str, Vec<u32>)> = Vec::new();
     for thing in things {
         job::poll();
         let made = match &thing.shown {
-            Shown::Point(p) => Ok(maker.sheet.add(116, 0, Role::Free, Values::new().point(*p / scale.model).int(0))),
-            Shown::Curve(chain) => chain.to_curve().map_err(Damage::from).and_then(|curve| maker.curve(&curve, Role::Free, true)),
-            Shown::Surface(surface) => maker.surface(surface),
-            Shown::Faces(faces) => maker.bodies(thing, faces),
+            Shown::Point(p) => Ok(builder.sheet.add(116, 0, Role::Free, Values::new().point(*p / scale.model).int(0))),
+            Shown::Curve(chain) => chain.to_curve().map_err(Defect::from).and_then(|curve| builder.curve(&curve, Role::Free, true)),
+            Shown::Surface(surface) => builder.surface(surface),
+            Shown::Faces(faces) => builder.bodies(thing, faces),
         };
-        let d = made.map_err(|Damage(why)| if thing.name.is_empty() { why } else { format!("`{}`: {why}", thing.name) })?;
+        let d = made.map_err(|Defect(why)| if thing.name.is_empty() { why } else { format!("`{}`: {why}", thing.name) })?;
         if !thing.name.is_empty() {
-            maker.sheet.name(d, &thing.name);
+            builder.sheet.name(d, &thing.name);
         }
         if let Some(rgb) = thing.color {
-            maker.sheet.paint(d, rgb);
+            builder.sheet.paint(d, rgb);
         }
-        maker.sheet.put_on(d, &thing.layers);
+        builder.sheet.put_on(d, &thing.layers);
         if thing.group.is_empty() {
             continue;
         }
@@ -44,19 +44,19 @@ pub fn sheet(things: &[Thing], scale: &Scale) -> Result<Sheet, String> {
         }
     }
     for (name, members) in groups {
-        let d = maker.sheet.add(402, 7, Role::Free, Values::new().int(members.len() as u32).ints(members));
-        maker.sheet.name(d, name);
+        let d = builder.sheet.add(402, 7, Role::Free, Values::new().int(members.len() as u32).ints(members));
+        builder.sheet.name(d, name);
     }
-    if maker.off > 0.0 {
-        let how = if maker.sampled { ", as sampled" } else { "" };
-        maker.sheet.remark(format!(
+    if builder.off > 0.0 {
+        let how = if builder.sampled { ", as sampled" } else { "" };
+        builder.sheet.remark(format!(
             "Surfaces that are no B-splines are off by at most {:.2e} {}{how}",
-            maker.off / scale.model,
+            builder.off / scale.model,
             scale.unit
         ));
     }
-    maker.sheet.left_out = maker.left_out;
-    Ok(maker.sheet)
+    builder.sheet.left_out = builder.left_out;
+    Ok(builder.sheet)
 }
 
 /// Writes a file; `name` stands in its head. Returns what the format has no place for.

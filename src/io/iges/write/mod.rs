@@ -17,7 +17,7 @@
 
 mod curves;
 mod file;
-mod maker;
+mod file_builder;
 mod solids;
 mod surfaces;
 mod things;

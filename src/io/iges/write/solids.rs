@@ -15,10 +15,10 @@ use crate::geometry::closest;
 use crate::geometry::{Closest, Curve};
 use crate::io::cad::bodies::{Bodies, Faces};
 use crate::io::cad::control_nets::{NetBorder, borders};
-use crate::io::cad::damage::{Damage, damage};
+use crate::io::cad::defect::{Defect, defect};
 use crate::io::cad::elementary_surface::Ground;
 use crate::io::iges::entity_writer::{Role, Values};
-use crate::io::iges::write::maker::Maker;
+use crate::io::iges::write::file_builder::FileBuilder;
 use crate::io::iges::write::things::Thing;
 use crate::model::body::BodyLoop;
 
@@ -47,9 +47,9 @@ struct Ends {
     borders: Vec<NetBorder>,
 }
 
-impl Maker<'_> {
+impl FileBuilder<'_> {
     /// The bodies of a thing; several are a group.
-    pub(super) fn bodies(&mut self, thing: &Thing, faces: &Faces) -> Result<u32, Damage> {
+    pub(super) fn bodies(&mut self, thing: &Thing, faces: &Faces) -> Result<u32, Defect> {
         let bodies = faces.bodies(&self.scale.tolerance)?;
         self.off = self.off.max(bodies.off.0);
         self.sampled |= bodies.off.1;
@@ -95,7 +95,7 @@ impl Maker<'_> {
     }
 
     /// Shells of skins that share their lists.
-    fn shells(&mut self, bodies: &Bodies, skins: &[usize], role: Role) -> Result<Vec<u32>, Damage> {
+    fn shells(&mut self, bodies: &Bodies, skins: &[usize], role: Role) -> Result<Vec<u32>, Defect> {
         let lists = self.lists(bodies, skins)?;
         let mut shells = Vec::with_capacity(skins.len());
         for skin in skins.iter().map(|k| &bodies.body.skins[*k]) {
@@ -110,7 +110,7 @@ impl Maker<'_> {
         Ok(shells)
     }
 
-    fn lists(&mut self, bodies: &Bodies, skins: &[usize]) -> Result<Lists, Damage> {
+    fn lists(&mut self, bodies: &Bodies, skins: &[usize]) -> Result<Lists, Defect> {
         let faces = skins.iter().flat_map(|k| &bodies.body.skins[*k].faces);
         let mut edges: Vec<usize> = faces.flat_map(|face| bodies.loops(*face)).flatten().map(|(edge, _)| *edge).collect();
         edges.sort_unstable();
@@ -125,7 +125,7 @@ impl Maker<'_> {
         let list = self.sheet.add(502, 1, Role::Part, values);
         let mut values = Values::new().int(edges.len() as u32);
         for k in &edges {
-            let curve = bodies.curves[*k].as_ref().ok_or_else(|| damage("an edge of one of its faces has no curve"))?;
+            let curve = bodies.curves[*k].as_ref().ok_or_else(|| defect("an edge of one of its faces has no curve"))?;
             let curve = self.piece(curve, Role::Part, true)?;
             let (from, to) = bodies.body.edges[*k].ends;
             values = values.ints([curve, list, place_of[&from], list, place_of[&to]]);
@@ -134,7 +134,7 @@ impl Maker<'_> {
         Ok(Lists { vertices: (list, place_of), edges: (own, placed(&edges)) })
     }
 
-    fn face(&mut self, bodies: &Bodies, k: usize, lists: &Lists) -> Result<u32, Damage> {
+    fn face(&mut self, bodies: &Bodies, k: usize, lists: &Lists) -> Result<u32, Defect> {
         let ground = &bodies.grounds[k];
         let surface = self.ground(ground);
         let ends = Ends { poles: ground.poles(), borders: if let Ground::Net(net, ..) = ground { borders(net) } else { Vec::new() } };

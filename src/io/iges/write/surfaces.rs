@@ -4,11 +4,11 @@ use crate::base::tolerance::Tolerance;
 use crate::geometry::shapes::nurbs::projected;
 use crate::io::cad::elementary_surface::Ground;
 use crate::io::iges::entity_writer::{Role, Values};
-use crate::io::iges::write::maker::Maker;
+use crate::io::iges::write::file_builder::FileBuilder;
 use crate::surface::analysis::elementary::{Elementary, Form};
 use crate::surface::{NetForm, NurbsSurface, Off};
 
-impl Maker<'_> {
+impl FileBuilder<'_> {
     pub(super) fn form(&mut self, form: &NetForm, role: Role) -> u32 {
         self.off = self.off.max(form.off.distance());
         self.sampled |= matches!(form.off, Off::Sampled(_));

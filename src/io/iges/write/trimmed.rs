@@ -12,23 +12,23 @@ use crate::geometry::{Curve, Kind};
 use crate::io::cad::base_surface::Base;
 use crate::io::cad::curve_on_surface::{composed, fitted};
 use crate::io::cad::curves::transformed;
-use crate::io::cad::damage::{Damage, damage};
+use crate::io::cad::defect::{Defect, defect};
 use crate::io::iges::entity_writer::{Role, Values};
-use crate::io::iges::write::maker::Maker;
+use crate::io::iges::write::file_builder::FileBuilder;
 use crate::surface::{Domain, NurbsSurface, Side, Surface};
 
-impl Maker<'_> {
+impl FileBuilder<'_> {
     /// A surface as it goes out by itself.
-    pub(super) fn surface(&mut self, surface: &Surface) -> Result<u32, Damage> {
+    pub(super) fn surface(&mut self, surface: &Surface) -> Result<u32, Defect> {
         match surface.to_net(&self.scale.tolerance)? {
             Some(form) => Ok(self.form(&form, Role::Free)),
             None if surface.domain() == Domain::Loop => self.bordered(surface),
-            None => Err(damage("IGES has no place for a plane without a border")),
+            None => Err(defect("IGES has no place for a plane without a border")),
         }
     }
 
     /// A surface inside loops: its net, and each loop in (u, v) and in space.
-    pub(super) fn bordered(&mut self, surface: &Surface) -> Result<u32, Damage> {
+    pub(super) fn bordered(&mut self, surface: &Surface) -> Result<u32, Defect> {
         let ground = surface.ground_net(&self.scale.tolerance)?;
         let base = match &ground {
             Some(form) => self.form(form, Role::Part),
@@ -45,7 +45,7 @@ impl Maker<'_> {
             }
             first += n;
             let in_uv = if surface.is_flat() { in_uv } else { self.within_net(in_uv)? };
-            let uvs = in_uv.iter().map(|c| self.curve(c, Role::InUv, false)).collect::<Result<Vec<u32>, Damage>>()?;
+            let uvs = in_uv.iter().map(|c| self.curve(c, Role::InUv, false)).collect::<Result<Vec<u32>, Defect>>()?;
             let mut row = |list: Vec<u32>, role| match list.len() as u32 {
                 0 => 0,
                 n => self.sheet.add(102, 0, role, Values::new().int(n).ints(list)),
@@ -54,13 +54,13 @@ impl Maker<'_> {
             let preferred = if uv == 0 { 2 } else { 3 };
             borders.push(self.sheet.add(142, 0, Role::InUv, Values::new().int(1).ints([base, uv, space]).int(preferred)));
         }
-        let [outer, holes @ ..] = borders.as_slice() else { return Err(damage("it has no border")) };
+        let [outer, holes @ ..] = borders.as_slice() else { return Err(defect("it has no border")) };
         let values = Values::new().int(base).int(1).int(holes.len() as u32).int(*outer).ints(holes.iter().copied());
         Ok(self.sheet.add(144, 0, Role::Free, values))
     }
 
     /// A loop moved by whole turns to where the net has its parameters; none of it where it runs over a seam.
-    fn within_net(&self, mut loop_of: Vec<Curve>) -> Result<Vec<Curve>, Damage> {
+    fn within_net(&self, mut loop_of: Vec<Curve>) -> Result<Vec<Curve>, Defect> {
         let bounds = loop_of.iter().map(Curve::bbox).fold(Box3::EMPTY, Box3::union);
         let by = -(bounds.min + DVec3::splat(NUDGE)).floor();
         let moved = bounds.max + by;
@@ -69,13 +69,13 @@ impl Maker<'_> {
         }
         if by.x != 0.0 || by.y != 0.0 {
             let m = DAffine3::from_translation(DVec3::new(by.x, by.y, 0.0));
-            loop_of = loop_of.iter().map(|c| transformed(c, &m, &self.scale.tolerance)).collect::<Result<_, Damage>>()?;
+            loop_of = loop_of.iter().map(|c| transformed(c, &m, &self.scale.tolerance)).collect::<Result<_, Defect>>()?;
         }
         Ok(loop_of)
     }
 
     /// The net of a plane over the box of its border.
-    fn plane(&mut self, surface: &Surface) -> Result<u32, Damage> {
+    fn plane(&mut self, surface: &Surface) -> Result<u32, Defect> {
         let jet = surface.jet(0.0, 0.0);
         let mut reach = Box3::EMPTY;
         for k in 0..surface.n_sides() {
@@ -92,14 +92,14 @@ impl Maker<'_> {
     }
 
     /// One side in the (u, v) of the net and in space, in the loop's direction; no curve in space along a pole.
-    fn border(&self, surface: &Surface, ground: Option<&Base>, k: usize) -> Result<(Curve, Option<Curve>), Damage> {
+    fn border(&self, surface: &Surface, ground: Option<&Base>, k: usize) -> Result<(Curve, Option<Curve>), Defect> {
         let tolerance = &self.scale.tolerance;
         let origin = surface.origin();
         let over_net = |(u, v): (f64, f64)| match surface.ground() {
             Domain::Triangle => DVec3::new(if v < 1.0 { u / (1.0 - v) } else { 0.0 }, v, 0.0),
             _ => DVec3::new(u, v, 0.0),
         };
-        let lost = || damage("a side of its border has no course in (u, v)");
+        let lost = || defect("a side of its border has no course in (u, v)");
         let Side::Chain { chain, from, to } = surface.side(k) else {
             let (a, b) = surface.border_line(k).ok_or_else(lost)?;
             let line = build::line(over_net(a), over_net(b), origin)?;

@@ -8,7 +8,7 @@ use glam::DVec3;
 use crate::base::job;
 use crate::geometry::Motion;
 use crate::io::cad::assembly::Node;
-use crate::io::cad::damage::Damage;
+use crate::io::cad::defect::Defect;
 use crate::io::step::write::product::{self, Product, Shape};
 use crate::io::step::write::records::{self, Id, Records};
 use crate::io::step::write::styles::{self, Painted};
@@ -36,14 +36,14 @@ pub fn sheet(things: &[Thing], nodes: &[Node], name: &str, setup: &Setup) -> Res
     let application = product::application(&mut records, setup.schema);
     let tree = assembly::products(things, nodes, name, &setup.scale.tolerance);
     let uses = assembly::uses(&tree);
-    let mut made = Made::default();
+    let mut content = Content::default();
     let mut shapes: Vec<(Product, Shape)> = Vec::with_capacity(tree.len());
     let mut occurrences = 0;
     for (own, uses) in tree.iter().zip(uses) {
         let whole = product::product(&mut records, application, &own.name);
-        let painted = made.painted.len();
-        let items = made.put(&mut records, things, own, uses, setup)?;
-        made.of_product.push(painted..made.painted.len());
+        let painted = content.painted.len();
+        let items = content.put(&mut records, things, own, uses, setup)?;
+        content.of_product.push(painted..content.painted.len());
         let places: Vec<Motion> = own.parts.iter().map(|part| part.motion.in_units(setup.scale.model)).collect();
         let shape = product::shape(&mut records, whole, &own.name, context, items.kind(), &items.all(), &places);
         for (place, part) in own.parts.iter().enumerate() {
@@ -52,33 +52,33 @@ pub fn sheet(things: &[Thing], nodes: &[Node], name: &str, setup: &Setup) -> Res
             let placed = product::occurrence(&mut records, occurrences, &part.name, (*of, inner), (whole, &shape), place);
             if let Some((from, rgb)) = part.repaint {
                 let at = Some(product::place(&mut records, placed, &shape, place, context));
-                let own = made.painted[made.of_product[part.product].clone()].iter().filter(|painted| painted.rgb == from);
-                made.repainted.extend(own.map(|painted| Painted { rgb, over: Some(painted.item), at, ..*painted }));
+                let own = content.painted[content.of_product[part.product].clone()].iter().filter(|painted| painted.rgb == from);
+                content.repainted.extend(own.map(|painted| Painted { rgb, over: Some(painted.item), at, ..*painted }));
             }
         }
         shapes.push((whole, shape));
     }
-    for (layer, members) in made.layers {
+    for (layer, members) in content.layers {
         records.put("PRESENTATION_LAYER_ASSIGNMENT", |v| {
             v.text(&layer).text("").ids(&members);
         });
     }
-    made.painted.append(&mut made.repainted);
-    styles::put(&mut records, &made.painted, context);
+    content.painted.append(&mut content.repainted);
+    styles::put(&mut records, &content.painted, context);
     if let Some((whole, _)) = shapes.last() {
-        validation::put(&mut records, things, made.thin_area, whole.shape, context, setup);
+        validation::put(&mut records, things, content.thin_area, whole.shape, context, setup);
     }
-    let off = made.off;
+    let off = content.off;
     let remark = (off.0 > 0.0).then(|| {
         let how = if off.1 { ", as sampled" } else { "" };
         format!("Surfaces that are no B-splines are off by at most {:.2e} {}{how}", off.0 / setup.scale.model, setup.unit)
     });
-    Ok(Sheet { records, remark, left_out: made.left_out })
+    Ok(Sheet { records, remark, left_out: content.left_out })
 }
 
 /// What of all products stands behind them in the file, or in words.
 #[derive(Default)]
-pub(crate) struct Made {
+pub(crate) struct Content {
     layers: Vec<(String, Vec<Id>)>,
     painted: Vec<Painted>,
     /// Which of these are of each product.
@@ -98,7 +98,7 @@ struct Items {
     wires: Vec<Id>,
 }
 
-impl Made {
+impl Content {
     /// The things of a product, which stands in the whole so many times.
     fn put(
         &mut self,
@@ -116,7 +116,7 @@ impl Made {
             // What has the name of its place has that of the product, which may stand elsewhere too.
             let name = if product.places.contains(&thing.name) { &product.name } else { &thing.name };
             let own = put(records, thing, name, setup)
-                .map_err(|Damage(why)| if thing.name.is_empty() { why } else { format!("`{}`: {why}", thing.name) })?;
+                .map_err(|Defect(why)| if thing.name.is_empty() { why } else { format!("`{}`: {why}", thing.name) })?;
             self.off = (self.off.0.max(own.off.0), self.off.1 || own.off.1);
             let all = [own.solids.as_slice(), &own.sheets, &own.wires].concat();
             thing.layers.iter().for_each(|layer| on_layer(&mut self.layers, layer, &all));
@@ -161,7 +161,7 @@ fn on_layer(layers: &mut Vec<(String, Vec<Id>)>, layer: &str, items: &[Id]) {
 
 /// What became of a thing.
 #[derive(Default)]
-struct Put {
+struct WrittenThing {
     solids: Vec<Id>,
     sheets: Vec<Id>,
     wires: Vec<Id>,
@@ -172,13 +172,14 @@ struct Put {
     thin_area: f64,
 }
 
-fn put(records: &mut Records, thing: &Thing, name: &str, setup: &Setup) -> Result<Put, Damage> {
+fn put(records: &mut Records, thing: &Thing, name: &str, setup: &Setup) -> Result<WrittenThing, Defect> {
     let scale = &setup.scale;
     let geometry = match &thing.shown {
         Shown::Faces(faces) => {
-            let topology::Made { solids, sheets, off, painted, layered, left_out, thin_area } = topology::put(faces, records, name, scale)?;
+            let topology::WrittenFaces { solids, sheets, off, painted, layered, left_out, thin_area } =
+                topology::put(faces, records, name, scale)?;
             let left_out = left_out.into_iter().collect();
-            return Ok(Put { solids, sheets, off, painted, layered, left_out, thin_area, ..Put::default() });
+            return Ok(WrittenThing { solids, sheets, off, painted, layered, left_out, thin_area, ..WrittenThing::default() });
         }
         Shown::Point(p) => records.point(*p / scale.model),
         Shown::Curve(chain) => curves::bounded(records, &chain.to_curve()?, name, scale)?,
@@ -187,7 +188,7 @@ fn put(records: &mut Records, thing: &Thing, name: &str, setup: &Setup) -> Resul
         v.text(name).ids(&[geometry]);
     });
     let painted = thing.color.map(|rgb| Painted { item: geometry, rgb, curve: true, over: None, at: None });
-    Ok(Put { wires: vec![set], painted: painted.into_iter().collect(), ..Put::default() })
+    Ok(WrittenThing { wires: vec![set], painted: painted.into_iter().collect(), ..WrittenThing::default() })
 }
 
 /// Writes a file; `name` stands in its head.

@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 
 use crate::base::job;
 use crate::io::cad::bodies::{Bodies, Faces, numbered};
-use crate::io::cad::damage::{Damage, damage};
+use crate::io::cad::defect::{Defect, defect};
 use crate::io::cad::elementary_surface::Ground;
 use crate::io::step::write::curves::Along;
 use crate::io::step::write::records::{Id, Records};
@@ -20,7 +20,7 @@ use crate::io::step::write::{pcurves, surfaces};
 
 /// What became of faces.
 #[derive(Debug, Default)]
-pub struct Made {
+pub struct WrittenFaces {
     /// Solids.
     pub solids: Vec<Id>,
     /// Surface models.
@@ -38,10 +38,10 @@ pub struct Made {
 }
 
 /// Writes faces under a name.
-pub fn put(faces: &Faces, records: &mut Records, name: &str, scale: &Scale) -> Result<Made, Damage> {
+pub fn put(faces: &Faces, records: &mut Records, name: &str, scale: &Scale) -> Result<WrittenFaces, Defect> {
     let bodies = faces.bodies(&scale.tolerance)?;
-    let made = Made { off: bodies.off, left_out: bodies.left_out(name), thin_area: bodies.thin_area, ..Made::default() };
-    let mut writer = Writer { bodies: &bodies, scale, surfaces: Vec::new(), edges: Vec::new(), made };
+    let written = WrittenFaces { off: bodies.off, left_out: bodies.left_out(name), thin_area: bodies.thin_area, ..WrittenFaces::default() };
+    let mut writer = Writer { bodies: &bodies, scale, surfaces: Vec::new(), edges: Vec::new(), written };
     let faces = writer.faces(records)?;
     for solid in bodies.solids() {
         let outer = shell(records, &bodies, solid.outer, &faces);
@@ -52,7 +52,7 @@ pub fn put(faces: &Faces, records: &mut Records, name: &str, scale: &Scale) -> R
             })
         };
         let voids: Vec<Id> = solid.voids.iter().map(void).collect();
-        let own = numbered(name, writer.made.solids.len());
+        let own = numbered(name, writer.written.solids.len());
         let made = if voids.is_empty() {
             records.put("MANIFOLD_SOLID_BREP", |v| {
                 v.text(&own).id(outer);
@@ -64,15 +64,15 @@ pub fn put(faces: &Faces, records: &mut Records, name: &str, scale: &Scale) -> R
         };
         let skins = std::iter::once(&solid.outer).chain(&solid.voids).map(|k| &bodies.body.skins[*k]);
         writer.paint(made, &skins.flat_map(|skin| skin.faces.iter().map(|face| faces[*face])).collect());
-        writer.made.solids.push(made);
+        writer.written.solids.push(made);
     }
     let sheets: Vec<Id> = bodies.sheets().into_iter().map(|skin| shell(records, &bodies, skin, &faces)).collect();
     if !sheets.is_empty() {
-        writer.made.sheets.push(records.put("SHELL_BASED_SURFACE_MODEL", |v| {
+        writer.written.sheets.push(records.put("SHELL_BASED_SURFACE_MODEL", |v| {
             v.text(name).ids(&sheets);
         }));
     }
-    Ok(writer.made)
+    Ok(writer.written)
 }
 
 /// The shell of a skin.
@@ -91,22 +91,22 @@ struct Writer<'b> {
     surfaces: Vec<Id>,
     /// The record of each edge.
     edges: Vec<Option<Id>>,
-    made: Made,
+    written: WrittenFaces,
 }
 
 impl Writer<'_> {
     /// All faces, in the order of the body.
-    fn faces(&mut self, records: &mut Records) -> Result<Vec<Id>, Damage> {
+    fn faces(&mut self, records: &mut Records) -> Result<Vec<Id>, Defect> {
         self.surfaces = self.bodies.grounds.iter().map(|ground| surfaces::put(records, ground, self.scale)).collect();
         self.edges = self.all_edges(records)?;
         let mut made = Vec::with_capacity(self.bodies.grounds.len());
         for k in 0..self.bodies.grounds.len() {
             job::poll();
             let item = self.face(records, k)?;
-            self.made.painted.extend(self.bodies.color(k).map(|rgb| Painted { item, rgb, curve: false, over: None, at: None }));
+            self.written.painted.extend(self.bodies.color(k).map(|rgb| Painted { item, rgb, curve: false, over: None, at: None }));
             let layers = self.bodies.layers(k);
             if !layers.is_empty() {
-                self.made.layered.push((item, layers.to_vec()));
+                self.written.layered.push((item, layers.to_vec()));
             }
             made.push(item);
         }
@@ -115,8 +115,8 @@ impl Writer<'_> {
 
     /// Gives a solid of which all faces have a colour that of most of them; the others override it.
     fn paint(&mut self, solid: Id, faces: &BTreeSet<Id>) {
-        let (own, others): (Vec<Painted>, Vec<Painted>) = self.made.painted.drain(..).partition(|painted| faces.contains(&painted.item));
-        self.made.painted = others;
+        let (own, others): (Vec<Painted>, Vec<Painted>) = self.written.painted.drain(..).partition(|painted| faces.contains(&painted.item));
+        self.written.painted = others;
         let mut counts: Vec<([f64; 3], usize)> = Vec::new();
         for painted in &own {
             match counts.iter_mut().find(|known| known.0 == painted.rgb) {
@@ -125,14 +125,14 @@ impl Writer<'_> {
             }
         }
         let most = counts.iter().rev().max_by_key(|known| known.1).filter(|_| own.len() == faces.len());
-        let Some((rgb, _)) = most.copied() else { return self.made.painted.extend(own) };
-        self.made.painted.push(Painted { item: solid, rgb, curve: false, over: None, at: None });
+        let Some((rgb, _)) = most.copied() else { return self.written.painted.extend(own) };
+        self.written.painted.push(Painted { item: solid, rgb, curve: false, over: None, at: None });
         let over = own.into_iter().filter(|painted| painted.rgb != rgb);
-        self.made.painted.extend(over.map(|painted| Painted { over: Some(solid), ..painted }));
+        self.written.painted.extend(over.map(|painted| Painted { over: Some(solid), ..painted }));
     }
 
     /// The edges that some face uses, with their vertices.
-    fn all_edges(&self, records: &mut Records) -> Result<Vec<Option<Id>>, Damage> {
+    fn all_edges(&self, records: &mut Records) -> Result<Vec<Option<Id>>, Defect> {
         let mut vertices: Vec<Option<Id>> = vec![None; self.bodies.vertices.len()];
         let mut edges = Vec::with_capacity(self.bodies.curves.len());
         let mut faces_of: Vec<Vec<usize>> = vec![Vec::new(); self.bodies.curves.len()];
@@ -180,14 +180,14 @@ impl Writer<'_> {
         })
     }
 
-    fn face(&self, records: &mut Records, k: usize) -> Result<Id, Damage> {
+    fn face(&self, records: &mut Records, k: usize) -> Result<Id, Defect> {
         let surface = self.surfaces[k];
         let loops = self.bodies.loops(k);
         let mut bounds = Vec::with_capacity(loops.len());
         for (n, around) in loops.iter().enumerate() {
             let mut edges = Vec::with_capacity(around.len());
             for (edge, against) in around {
-                let edge = self.edges[*edge].ok_or_else(|| damage("an edge of one of its faces has no curve"))?;
+                let edge = self.edges[*edge].ok_or_else(|| defect("an edge of one of its faces has no curve"))?;
                 edges.push(records.put("ORIENTED_EDGE", |v| {
                     v.text("").word("*").word("*").id(edge).flag(!against);
                 }));

@@ -1,9 +1,9 @@
-//! A file that is being made, with what is told of its accuracy.
+//! A file that is being made, and how accurate it is.
 
 use crate::io::iges::entity_writer::Sheet;
 use crate::io::iges::write::things::Scale;
 
-pub(crate) struct Maker<'s> {
+pub(crate) struct FileBuilder<'s> {
     pub(crate) sheet: Sheet,
     pub(crate) scale: &'s Scale,
     /// How far nets are from their surfaces at most, model units, and whether all that is known of one are samples.

@@ -8,11 +8,11 @@ use crate::base::text;
 
 /// What is wrong with an entity, in words; the rest of the file does not suffer.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Damage(pub String);
+pub struct Defect(pub String);
 
-/// Damage in these words.
-pub fn damage(what: impl Into<String>) -> Damage {
-    Damage(what.into())
+/// A defect in these words.
+pub fn defect(what: impl Into<String>) -> Defect {
+    Defect(what.into())
 }
 
 /// Says faults of the kernel in the numbers of the model.
@@ -36,7 +36,7 @@ impl Say for Plain {
     }
 }
 
-impl From<Fault> for Damage {
+impl From<Fault> for Defect {
     fn from(fault: Fault) -> Self {
         Self(fault.describe(&Plain).message)
     }
