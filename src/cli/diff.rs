@@ -42,7 +42,7 @@ fn run(matches: &ArgMatches, terminal: &Terminal) -> Exit {
         Err(NoDiff::Bug(bug)) => {
             let place = interrupt::last_panic_place();
             terminal
-                .tell(&format!("E999 × a bug in loft: {} ({place})\n  help: please report it with both files and this text\n", bug.what));
+                .eprint(&format!("E999 × a bug in loft: {} ({place})\n  help: please report it with both files and this text\n", bug.what));
             Exit::Bug
         }
     }

@@ -115,31 +115,31 @@ impl Task<'_> {
                 exit
             }
             Err(error) => {
-                self.terminal.tell(&format!("loft: cannot write {name:?}: {error}\n"));
+                self.terminal.eprint(&format!("loft: cannot write {name:?}: {error}\n"));
                 exit.max(Exit::Errors)
             }
         }
     }
 
-    /// Lays a script out behind the wall and tells its mistakes.
+    /// Lays a script out, bugs caught, and prints its mistakes.
     fn formatted(&self, name: &str, source: &str) -> Result<(Formatted, Exit), Exit> {
         let formatted = guarded(|| format(source)).map_err(|bug| {
             let place = super::interrupt::last_panic_place();
             let text =
                 format!("E999 × a bug in loft: {} ({place})\n  help: {name} is as it was; please report it with this text\n", bug.what);
-            self.terminal.tell(&text);
+            self.terminal.eprint(&text);
             Exit::Bug
         })?;
         let errors = formatted.found.iter().any(|d| d.severity() == crate::base::fault::Severity::Error);
         if errors {
             let mut sources = Sources::default();
             sources.add(name, source);
-            self.terminal.tell(&render_all(&formatted.found, &sources, self.terminal.color_err));
+            self.terminal.eprint(&render_all(&formatted.found, &sources, self.terminal.color_err));
         }
         Ok((formatted, if errors { Exit::Errors } else { Exit::Fine }))
     }
 
-    /// Tells the first lines that would change.
+    /// Prints the first lines that would change.
     fn differs(&self, name: &str, source: &str, formatted: &Formatted) -> Exit {
         if !formatted.changed {
             return Exit::Fine;

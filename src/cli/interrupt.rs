@@ -89,7 +89,7 @@ pub fn protect(outputs: &Staging) {
     watched().outputs.push(outputs.clone());
 }
 
-/// A panic is told by whoever catches it, in one message; the standard hook would print before.
+/// A panic is reported by what catches it, in one message; the standard hook would print before.
 pub fn keep_panics_quiet() {
     panic::set_hook(Box::new(|info| {
         let place = info.location().map(|l| format!("{}:{}", l.file(), l.line())).unwrap_or_default();

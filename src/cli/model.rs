@@ -95,7 +95,7 @@ pub struct Variant<'a> {
     pub row: Option<&'a TableRow>,
 }
 
-/// Runs one case behind the wall.
+/// Runs one case; a bug is caught.
 pub fn case(model: &Model, variant: Variant, options: &Options, job: &Arc<Job>, kept: Option<&mut Kept>) -> Result<Outcome, Bug> {
     let Variant { disk, sets, row } = variant;
     interrupt::protect(disk.staging());
@@ -121,7 +121,7 @@ pub fn case(model: &Model, variant: Variant, options: &Options, job: &Arc<Job>, 
 /// Says that loft has a bug.
 pub fn bug(bug: &Bug, model: &Model, terminal: &Terminal) -> Exit {
     let place = interrupt::last_panic_place();
-    terminal.tell(&format!(
+    terminal.eprint(&format!(
         "E999 × a bug in loft: {} ({place})\n  help: nothing was written; please report it with the script ({}), the command line and this text\n",
         bug.what, model.name
     ));
@@ -144,7 +144,7 @@ pub fn exit_of(outcome: &Outcome) -> Exit {
 /// Says once that the folder of `--cache` is of no use; the results are the same without it.
 fn complain(cache: Option<&Cache>, options: &Options, terminal: &Terminal) {
     if let (Some(why), Some(folder)) = (cache.and_then(Cache::trouble), &options.cache) {
-        terminal.tell(&format!("loft: nothing is kept in {:?} (--cache): {why}\n", folder.to_string_lossy()));
+        terminal.eprint(&format!("loft: nothing is kept in {:?} (--cache): {why}\n", folder.to_string_lossy()));
     }
 }
 
@@ -174,9 +174,9 @@ fn one(
 
 /// Diagnostics, how things were found, and timings: all on standard error.
 pub fn show(outcome: &Outcome, options: &Options, terminal: &Terminal) {
-    terminal.tell(&outcome.drawn(terminal.color_err, options.verbose));
+    terminal.eprint(&outcome.drawn(terminal.color_err, options.verbose));
     if options.verbose {
-        outcome.notes.iter().for_each(|line| terminal.tell(&format!("{line}\n")));
+        outcome.notes.iter().for_each(|line| terminal.eprint(&format!("{line}\n")));
     }
     if options.timings {
         let t = &outcome.report.timings;
@@ -186,9 +186,9 @@ pub fn show(outcome: &Outcome, options: &Options, terminal: &Terminal) {
         }
         let (parse, evaluate, mesh, write) = (t.parse, t.evaluate, t.mesh, t.write);
         let line = format!("parse {parse:.3} s, evaluate {evaluate:.3} s, mesh {mesh:.3} s, write {write:.3} s{reused}\n");
-        terminal.tell(&line);
+        terminal.eprint(&line);
     }
     if outcome.interrupted {
-        terminal.tell("interrupted: nothing was written\n");
+        terminal.eprint("interrupted: nothing was written\n");
     }
 }

@@ -32,7 +32,7 @@ fn run(matches: &ArgMatches, terminal: &Terminal) -> Exit {
             Exit::Fine
         }
         Err(error) => {
-            terminal.tell(&format!("loft: cannot write a model in {}: {error}\n", folder.display()));
+            terminal.eprint(&format!("loft: cannot write a model in {}: {error}\n", folder.display()));
             Exit::Errors
         }
     }

@@ -27,7 +27,7 @@ pub struct Options {
     pub json: bool,
     /// How things were found: flows, methods, counts, notes.
     pub verbose: bool,
-    /// Nothing on standard output; what is wrong is told all the same.
+    /// Nothing on standard output; errors are printed all the same.
     pub quiet: bool,
     /// The whole summary of each row of a table, not only its line.
     pub each: bool,

@@ -27,9 +27,9 @@ pub fn with_progress<T>(job: &Arc<Job>, watched: bool, work: impl FnOnce() -> T)
                 return;
             }
             let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
-            let mut told = Told::default();
+            let mut text = PhaseText::default();
             loop {
-                show(&bar, &mut told, &job);
+                show(&bar, &mut text, &job);
                 if wait.recv_timeout(STEP) != Err(RecvTimeoutError::Timeout) {
                     bar.finish_and_clear();
                     return;
@@ -47,28 +47,28 @@ pub fn with_progress<T>(job: &Arc<Job>, watched: bool, work: impl FnOnce() -> T)
 /// What the line says: the phase, and how much of it is done; that never becomes less within one phase, though the work may
 /// turn out to be more than was announced.
 #[derive(Debug, Default)]
-struct Told {
+struct PhaseText {
     number: u64,
     most: u64,
 }
 
-impl Told {
-    fn words(&mut self, phase: String, number: u64, (done, total): (u64, u64)) -> String {
+impl PhaseText {
+    fn words(&mut self, phase: &str, number: u64, (done, total): (u64, u64)) -> String {
         if number != self.number {
             *self = Self { number, most: 0 };
         }
         self.most = self.most.max((100 * done.min(total)).checked_div(total).unwrap_or_default());
-        let phase = if phase.is_empty() { "working".to_owned() } else { phase };
-        if self.most > 0 { format!("{phase}, {} %", self.most) } else { phase }
+        let phase = if phase.is_empty() { "working" } else { phase };
+        if self.most > 0 { format!("{phase}, {} %", self.most) } else { phase.to_owned() }
     }
 }
 
-fn show(bar: &ProgressBar, told: &mut Told, job: &Job) {
+fn show(bar: &ProgressBar, text: &mut PhaseText, job: &Job) {
     if let Ok(style) = ProgressStyle::with_template("{elapsed_precise} {spinner} {wide_msg}") {
         bar.set_style(style);
     }
     let (phase, number) = job.now();
-    bar.set_message(told.words(phase, number, job.progress()));
+    bar.set_message(text.words(&phase, number, job.progress()));
     bar.tick();
 }
 
@@ -78,12 +78,12 @@ mod tests {
 
     #[test]
     fn a_phase_never_runs_backwards() {
-        let mut told = Told::default();
-        let phase = || "meshing roof (1 of 2)".to_owned();
-        assert_eq!(told.words(phase(), 1, (0, 0)), "meshing roof (1 of 2)");
-        assert_eq!(told.words(phase(), 1, (2, 4)), "meshing roof (1 of 2), 50 %");
-        assert_eq!(told.words(phase(), 1, (2, 8)), "meshing roof (1 of 2), 50 %");
-        assert_eq!(told.words(phase(), 1, (9, 8)), "meshing roof (1 of 2), 100 %");
-        assert_eq!(told.words(String::new(), 2, (0, 8)), "working");
+        let mut text = PhaseText::default();
+        let phase = "meshing roof (1 of 2)";
+        assert_eq!(text.words(phase, 1, (0, 0)), "meshing roof (1 of 2)");
+        assert_eq!(text.words(phase, 1, (2, 4)), "meshing roof (1 of 2), 50 %");
+        assert_eq!(text.words(phase, 1, (2, 8)), "meshing roof (1 of 2), 50 %");
+        assert_eq!(text.words(phase, 1, (9, 8)), "meshing roof (1 of 2), 100 %");
+        assert_eq!(text.words("", 2, (0, 8)), "working");
     }
 }

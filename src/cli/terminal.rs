@@ -35,7 +35,7 @@ impl Terminal {
         Self { color_out: color(out), color_err: color(err), watched: err && !automatic }
     }
 
-    /// Prints on standard output; what that does not take is told by [`Terminal::end`].
+    /// Prints on standard output; what that does not take is reported by [`Terminal::end`].
     pub fn print(&self, text: &str) {
         let mut out = io::stdout().lock();
         lose(out.write_all(text.as_bytes()).and_then(|()| out.flush()));
@@ -50,14 +50,14 @@ impl Terminal {
     }
 
     /// How the program ends: a text that standard output did not take is an error of a run without others. A full disk
-    /// is told; a reader that has gone (`loft doc | head`) knows.
+    /// is reported; a reader that has gone (`loft doc | head`) knows.
     pub fn end(&self, exit: Exit) -> Exit {
         let lost = LOST.lock().unwrap_or_else(PoisonError::into_inner).take();
         let status = match lost {
             None => return exit,
             Some(error) if error.kind() == io::ErrorKind::BrokenPipe => Exit::ClosedPipe,
             Some(error) => {
-                self.tell(&format!("loft: cannot write to standard output: {}\n", plain(&error)));
+                self.eprint(&format!("loft: cannot write to standard output: {}\n", plain(&error)));
                 Exit::Errors
             }
         };
@@ -65,13 +65,13 @@ impl Terminal {
     }
 
     /// Prints on standard error.
-    pub fn tell(&self, text: &str) {
+    pub fn eprint(&self, text: &str) {
         let _ = io::stderr().lock().write_all(text.as_bytes());
     }
 
     /// Says on standard error what is wrong with the command line.
     pub fn wrong_usage(&self, text: &str) -> Exit {
-        self.tell(&format!("loft: {text}\n"));
+        self.eprint(&format!("loft: {text}\n"));
         Exit::Usage
     }
 }

@@ -65,7 +65,7 @@ fn run(matches: &ArgMatches, terminal: &Terminal) -> Exit {
         let text = golden::junit_text(&results);
         let staging = Staging::default();
         if let Err(error) = staging.write(path, &mut |out| out.write_all(text.as_bytes())).and_then(|_| staging.commit()) {
-            terminal.tell(&format!("loft: cannot write {}: {error}\n", path.display()));
+            terminal.eprint(&format!("loft: cannot write {}: {error}\n", path.display()));
             exit = exit.max(Exit::Errors);
         }
     }

@@ -36,7 +36,7 @@ pub fn variants(
         Ok(rows) => rows,
         Err(text) => return (terminal.wrong_usage(&format!("{name}: {text}")), Vec::new()),
     };
-    let (mut worst, mut cases, mut told) = (Exit::Fine, Vec::new(), BTreeMap::new());
+    let (mut worst, mut cases, mut printed) = (Exit::Fine, Vec::new(), BTreeMap::new());
     // Rows differ in few params: what does not depend on those is taken over.
     let mut kept = Kept::on(cache.cloned());
     for row in rows {
@@ -46,7 +46,7 @@ pub fn variants(
         let run = || case(model, variant, options, job, Some(&mut kept));
         let (exit, report) = match with_progress(job, watched, run) {
             Ok(outcome) => {
-                tell(&outcome, &row, &mut told, options, terminal);
+                print_row(&outcome, &row, &mut printed, options, terminal);
                 if options.each {
                     let summary = summary::text(&outcome.report, outcome.tolerance, terminal.color_out);
                     terminal.print(&format!("{}case {}\n{summary}", if cases.is_empty() { "" } else { "\n" }, row.name));
@@ -54,7 +54,7 @@ pub fn variants(
                 (exit_of(&outcome), outcome.report)
             }
             Err(caught) => {
-                terminal.tell(&heading(&row));
+                terminal.eprint(&heading(&row));
                 (bug(&caught, model, terminal), of_bug(&caught, model))
             }
         };
@@ -78,17 +78,17 @@ fn heading(row: &Row) -> String {
 }
 
 /// What a row has to say, on standard error under its name; what an earlier one said in the same words is not repeated.
-fn tell(outcome: &Outcome, row: &Row, told: &mut BTreeMap<String, String>, options: &Options, terminal: &Terminal) {
+fn print_row(outcome: &Outcome, row: &Row, printed: &mut BTreeMap<String, String>, options: &Options, terminal: &Terminal) {
     let drawn = outcome.drawn(false, options.verbose);
     if drawn.is_empty() && !options.verbose && !options.timings && !outcome.interrupted {
         return;
     }
-    terminal.tell(&heading(row));
-    match told.get(&drawn).filter(|_| !drawn.is_empty() && !options.verbose && !options.timings && !outcome.interrupted) {
-        Some(before) => terminal.tell(&format!("  the same as in case {before}\n")),
+    terminal.eprint(&heading(row));
+    match printed.get(&drawn).filter(|_| !drawn.is_empty() && !options.verbose && !options.timings && !outcome.interrupted) {
+        Some(before) => terminal.eprint(&format!("  the same as in case {before}\n")),
         None => show(outcome, options, terminal),
     }
-    told.entry(drawn).or_insert_with(|| row.name.clone());
+    printed.entry(drawn).or_insert_with(|| row.name.clone());
 }
 
 /// The report of a row that ended in a bug.

@@ -1,4 +1,4 @@
-//! Colours of pictures: of surfaces, of lines by what they tell, and ramps for values.
+//! Colours of pictures: of surfaces, of lines by what they show, and ramps for values.
 
 /// Red, green, blue, 0…255 as screens take them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -10,7 +10,7 @@ use crate::base::tolerance::Tolerance;
 use crate::model::{EdgePiece, Meeting, Model, SurfaceId, Track};
 use crate::network::{Chain, Network};
 
-/// Parts that a smooth piece is looked at in before it may count as straight.
+/// Parts in which a smooth piece is checked before it may count as straight.
 const PARTS: usize = 4;
 /// Halvings of a part.
 const DEPTH: u32 = 7;
@@ -59,7 +59,7 @@ pub fn chain(chain: &Chain, fine: f64, tolerance: &Tolerance) -> Vec<DVec3> {
 pub fn track(track: &Track, (from, to): (f64, f64), fine: f64) -> Vec<DVec3> {
     let at = |s: f64| track.point(s);
     let mut points = vec![at(from)];
-    // A run of several links may bend where they join: look everywhere.
+    // A run of several links may bend where they join: each part is checked.
     let n = PARTS * 4;
     let part = |k: usize| if k == n { to } else { from + (to - from) * k as f64 / n as f64 };
     (0..n).for_each(|k| follow(&at, (part(k), part(k + 1)), fine, DEPTH, &mut points));
@@ -85,10 +85,10 @@ fn kind_of(piece: &EdgePiece, tolerance: &Tolerance) -> Kind {
     }
 }
 
-/// Where the faces of meshes fold: what the borders of their surfaces tell, for the edges of elements along them.
+/// Where the faces of meshes fold: what the borders of their surfaces show, for the edges of elements along them.
 #[derive(Debug, Default)]
 pub struct Folds {
-    /// Names of two surfaces, the first not after the second; what the border tells, and points along it.
+    /// Names of two surfaces, the first not after the second; what the border shows, and points along it.
     borders: Vec<(String, String, Kind, Vec<DVec3>)>,
 }
 
@@ -109,7 +109,7 @@ impl Folds {
         Self { borders: pieces.iter().filter_map(border).collect() }
     }
 
-    /// What the border of two surfaces tells at a place; `None` where they are not known to meet.
+    /// What the border of two surfaces shows at a place; `None` where they are not known to meet.
     pub fn at(&self, (a, b): (&str, &str), place: DVec3) -> Option<Kind> {
         let (a, b) = (a.min(b), a.max(b));
         let own = || self.borders.iter().filter(|border| border.0 == a && border.1 == b);

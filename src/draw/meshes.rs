@@ -188,7 +188,7 @@ fn faces_of(mesh: &Mesh) -> Vec<u32> {
     of
 }
 
-/// What an edge tells; `None` for one inside a face.
+/// What an edge shows; `None` for one inside a face.
 fn kind_of(mesh: &Mesh, edge: &[Use], face_of: &[u32], folds: &Folds) -> Option<Kind> {
     let [(_, a), (_, b)] = *edge else {
         return Some(if edge.len() == 1 { Kind::Free } else { Kind::Crowded });

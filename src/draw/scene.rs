@@ -37,7 +37,7 @@ pub struct Sheet {
     pub paint: Paint,
 }
 
-/// What a line tells; later ones are drawn over earlier ones.
+/// What a line shows; later ones are drawn over earlier ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Kind {
     /// An edge of elements (of lines in a mesh).
@@ -102,7 +102,7 @@ impl Kind {
 /// A line in space.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line {
-    /// What it tells.
+    /// What it shows.
     pub kind: Kind,
     /// Points along it, model units.
     pub points: Vec<DVec3>,

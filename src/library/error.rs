@@ -11,7 +11,7 @@ use crate::session::report::{DiagnosticRow, LabelRow};
 /// What went wrong: a code, a sentence, and for scripts the place.
 ///
 /// Printed it is one line, `roof.loft:7:15: E501 …`; [`Error::diagnostics`] has all that was said, and `loft explain E501` (or
-/// `docs/codes/E501.md`) what a code means and how to mend it.
+/// `docs/codes/E501.md`) what a code means and how to fix it.
 ///
 /// ```
 /// let error = lofting::Script::from_str("let half = widht / 2").run().unwrap_err();
@@ -76,7 +76,7 @@ impl Error {
         &self.0.first.message
     }
 
-    /// Something that can be typed to mend it.
+    /// Something that can be typed to fix it.
     pub fn help(&self) -> Option<&str> {
         self.0.first.help.as_deref()
     }

@@ -96,8 +96,8 @@ impl Store for Place {
         read
     }
 
-    fn told_place(&self, path: &str) -> String {
-        self.out.as_ref().map_or_else(|| path.to_owned(), |out| out.told_place(path))
+    fn shown_place(&self, path: &str) -> String {
+        self.out.as_ref().map_or_else(|| path.to_owned(), |out| out.shown_place(path))
     }
 
     fn commit(&self) -> io::Result<()> {

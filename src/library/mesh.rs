@@ -119,9 +119,9 @@ impl Mesh {
     /// be written.
     pub fn write(&self, path: impl AsRef<Path>) -> Result<Vec<DiagnosticRow>, Error> {
         let path = path.as_ref();
-        let told = path.to_string_lossy();
-        let (bytes, notes) = self.encoded(&told)?;
-        write_whole(path, &bytes).map_err(|error| Error::new("E808", format!("cannot write \"{told}\": {}", plain(&error))))?;
+        let shown = path.to_string_lossy();
+        let (bytes, notes) = self.encoded(&shown)?;
+        write_whole(path, &bytes).map_err(|error| Error::new("E808", format!("cannot write \"{shown}\": {}", plain(&error))))?;
         Ok(notes)
     }
 

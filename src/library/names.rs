@@ -45,7 +45,7 @@ pub struct Speaker<'a> {
     pub names: &'a Names,
     /// The unit of coordinates; `None` where none is known: bare numbers.
     pub unit: Option<LengthUnit>,
-    /// How finely places are told.
+    /// How finely places are printed.
     pub tolerance: Option<Tolerance>,
 }
 

@@ -46,7 +46,7 @@ pub struct Script {
 
 impl Script {
     /// The script of a text, called `model.loft` in messages.
-    #[allow(clippy::should_implement_trait)] // It cannot fail: mistakes are told by `run`.
+    #[allow(clippy::should_implement_trait)] // It cannot fail: mistakes are reported by `run`.
     pub fn from_str(text: &str) -> Self {
         Self {
             name: "model.loft".to_owned(),

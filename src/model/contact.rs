@@ -1,7 +1,7 @@
 //! How faces join along the edges they share: gap and angle of the normals.
 //!
-//! Each stretch that two faces share is walked in equal steps along the first face's own border, at least 200 and 20 a
-//! span; round the least and the largest value found the walk is refined. So a bump narrower than a step may be missed.
+//! Each segment that two faces share is sampled in equal steps along the first face's own border, at least 200 and 20 a
+//! span; round the least and the largest value found the samples are refined. So a bump narrower than a step may be missed.
 
 use std::collections::BTreeSet;
 
@@ -18,16 +18,16 @@ use crate::base::tolerance::{NEAREST, Tolerance};
 use crate::network::Network;
 use crate::surface::{OneSided, Surface};
 
-/// Steps of a stretch, at the least.
+/// Steps of a segment, at the least.
 const STEPS: usize = 200;
 /// Steps of each span of it, at the least.
 const STEPS_A_SPAN: usize = 20;
-/// Steps of a stretch that is shown.
+/// Steps of a segment that is shown.
 const SEEN: usize = 24;
 /// Projections before a foot point is taken as it is.
 const ROUNDS: usize = 20;
 
-/// Values met along a stretch.
+/// Values met along a segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spread {
     /// The least.
@@ -40,7 +40,7 @@ pub struct Spread {
     pub at: DVec3,
 }
 
-/// A stretch of border that two faces share.
+/// A segment of border that two faces share.
 #[derive(Clone, Debug)]
 pub struct Contact {
     /// The faces; the same one twice at a seam.
@@ -54,12 +54,12 @@ pub struct Contact {
     /// Distance of the first face's border from the second one's, model units.
     pub gap: Spread,
     /// Angle between the normals of the faces, whatever their sides, 0 to a right angle, radians; `None` where a face has
-    /// no normal anywhere on the stretch.
+    /// no normal anywhere on the segment.
     pub angle: Option<Spread>,
 }
 
-/// A face's side of a stretch: a part of a piece of its loop.
-struct Border<'a> {
+/// A face's side of a segment: a part of a piece of its loop.
+struct SegmentSide<'a> {
     surface: &'a Surface,
     patch: &'a Patch,
     face: PatchId,
@@ -72,13 +72,13 @@ struct Border<'a> {
     ends: (f64, f64),
 }
 
-impl Border<'_> {
+impl SegmentSide<'_> {
     /// Arc length on the piece at a share of the segment.
     fn station(&self, f: f64) -> f64 {
         self.ends.0 + (self.ends.1 - self.ends.0) * f
     }
 
-    fn jet(&self, s: f64) -> Place {
+    fn jet(&self, s: f64) -> BorderJet {
         self.around.pieces[self.piece].at(s)
     }
 
@@ -93,7 +93,7 @@ impl Border<'_> {
         self.surface.normal_lean(u, v, (lean(u, self.patch.u), lean(v, self.patch.v)))
     }
 
-    /// Spans of the surface along the stretch.
+    /// Spans of the surface along the segment.
     fn spans(&self) -> usize {
         let ((a, _, _), (b, _, _)) = (self.jet(self.ends.0), self.jet(self.ends.1));
         let (us, vs) = self.surface.breaks();
@@ -103,7 +103,7 @@ impl Border<'_> {
 }
 
 impl Model {
-    /// Stretches that faces of some surfaces share; those of which `wanted` says so, told both faces and edges. Borders up to
+    /// Segments that faces of some surfaces share; those for which `wanted` holds, which is given both faces and edges. Borders up to
     /// `near` apart are shared. They come by the first of their faces, in the order of the list, then along its border; where
     /// more than two faces meet, each two of them have one.
     pub fn contacts(
@@ -115,15 +115,16 @@ impl Model {
         wanted: impl Fn((PatchId, EdgeId), (PatchId, EdgeId)) -> bool + Sync + Send,
     ) -> Vec<Contact> {
         let joins = self.joins(&members.iter().copied().collect(), near, network, tolerance);
-        let one = |a: &Border, b: &Border, segment| wanted((a.face, a.edge), (b.face, b.edge)).then(|| contact(a, b, &joins, segment));
+        let one =
+            |a: &SegmentSide, b: &SegmentSide, segment| wanted((a.face, a.edge), (b.face, b.edge)).then(|| contact(a, b, &joins, segment));
         self.across(members, &joins, one)
     }
 
-    /// How far the normal turns at most across each stretch that two faces share, 0 to a half turn, radians, whatever the sides
-    /// of their surfaces: an edge of each with where on it the middle of the stretch is. Otherwise as [`Model::contacts`].
+    /// How far the normal turns at most across each segment that two faces share, 0 to a half turn, radians, whatever the sides
+    /// of their surfaces: an edge of each with where on it the middle of the segment is. Otherwise as [`Model::contacts`].
     pub fn turns(&self, members: &[SurfaceId], near: f64, network: &Network, tolerance: &Tolerance) -> Vec<Turn> {
         let joins = self.joins(&members.iter().copied().collect(), near, network, tolerance);
-        let one = |a: &Border, b: &Border, segment| {
+        let one = |a: &SegmentSide, b: &SegmentSide, segment| {
             most_turn(a, b, STEPS.max(STEPS_A_SPAN * a.spans().max(b.spans()))).map(|turn| {
                 let place =
                     joins.edges.binary_search(&a.edge).ok().and_then(|k| joins.pieces.of_track[k].iter().find(|u| u.segment == segment));
@@ -133,12 +134,12 @@ impl Model {
         self.across(members, &joins, one)
     }
 
-    /// What is found of each stretch that two faces share, given by their borders and its number, in the order of [`pairs_in_order`].
+    /// What is found of each segment that two faces share, given by their borders and its number, in the order of [`pairs_in_order`].
     fn across<T: Send>(
         &self,
         members: &[SurfaceId],
         joins: &Joins,
-        one: impl Fn(&Border, &Border, usize) -> Option<T> + Sync + Send,
+        one: impl Fn(&SegmentSide, &SegmentSide, usize) -> Option<T> + Sync + Send,
     ) -> Vec<T> {
         let faces = self.faces_of(members);
         let loops = par::map(faces.len(), |n| self.loop_of(faces[n]));
@@ -151,7 +152,7 @@ impl Model {
         found.into_iter().flatten().collect()
     }
 
-    /// The largest turn of the normal across each of the joined stretches at a few places, otherwise as in [`Model::turns`]; `None` where
+    /// The largest turn of the normal across each of the joined segments at a few places, otherwise as in [`Model::turns`]; `None` where
     /// not two faces meet, or one has no normal.
     pub(super) fn turns_across(&self, members: &[SurfaceId], joins: &Joins) -> Vec<Option<f64>> {
         let faces = self.faces_of(members);
@@ -170,8 +171,8 @@ impl Model {
     }
 
     /// The borders on each segment.
-    fn borders<'a>(&'a self, faces: &[PatchId], loops: &'a [Loop], joins: &Joins) -> Vec<Vec<Border<'a>>> {
-        let mut borders: Vec<Vec<Border>> = joins.pieces.segments.iter().map(|_| Vec::new()).collect();
+    fn borders<'a>(&'a self, faces: &[PatchId], loops: &'a [Loop], joins: &Joins) -> Vec<Vec<SegmentSide<'a>>> {
+        let mut borders: Vec<Vec<SegmentSide>> = joins.pieces.segments.iter().map(|_| Vec::new()).collect();
         for (rank, (face, around)) in faces.iter().zip(loops).enumerate() {
             let patch = &self.patches[face.index()];
             let surface = &self.surfaces[patch.surface.index()].surface;
@@ -182,7 +183,7 @@ impl Model {
                 for part in &joins.pieces.of_track[place] {
                     let on = |s: f64| if against { entry.length() - s * share } else { s * share };
                     let ends = if part.against { (on(part.s.1), on(part.s.0)) } else { (on(part.s.0), on(part.s.1)) };
-                    borders[part.segment].push(Border { surface, patch, face: *face, rank, edge, around, piece, ends });
+                    borders[part.segment].push(SegmentSide { surface, patch, face: *face, rank, edge, around, piece, ends });
                 }
             }
         }
@@ -190,19 +191,19 @@ impl Model {
     }
 }
 
-/// How far the normal turns across a stretch.
+/// How far the normal turns across a segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Turn {
     /// An edge that it is a part of.
     pub edge: EdgeId,
-    /// Arc length on that edge at the middle of the stretch, model units.
+    /// Arc length on that edge at the middle of the segment, model units.
     pub s: f64,
     /// The largest angle, 0 to a half turn, radians.
     pub turn: f64,
 }
 
 /// Each two borders on one segment, with the segment: by the first one's face, then along its border.
-fn pairs_in_order(borders: &[Vec<Border>]) -> Vec<(usize, usize, usize)> {
+fn pairs_in_order(borders: &[Vec<SegmentSide>]) -> Vec<(usize, usize, usize)> {
     let of_segment = |segment: usize| {
         let count = borders[segment].len();
         (0..count).flat_map(move |a| (a + 1..count).map(move |b| (segment, a, b)))
@@ -218,9 +219,9 @@ fn pairs_in_order(borders: &[Vec<Border>]) -> Vec<(usize, usize, usize)> {
     order
 }
 
-/// The largest turn of the normal from one face to the other along a stretch; `None` where one has no normal anywhere.
-fn most_turn(a: &Border, b: &Border, steps: usize) -> Option<f64> {
-    // Faces of one side run along a stretch in opposite senses.
+/// The largest turn of the normal from one face to the other along a segment; `None` where one has no normal anywhere.
+fn most_turn(a: &SegmentSide, b: &SegmentSide, steps: usize) -> Option<f64> {
+    // Faces of one side run along a segment in opposite senses.
     let turned = (a.ends.0 < a.ends.1) == (b.ends.0 < b.ends.1);
     let at = |k: usize| {
         let f = k as f64 / steps as f64;
@@ -275,10 +276,10 @@ impl Model {
 }
 
 /// A place on a border by its arc length: (u, v), point and unit tangent.
-type Place = ((f64, f64), DVec3, DVec3);
+type BorderJet = ((f64, f64), DVec3, DVec3);
 
 /// Arc length and distance of the point of a border nearest to a point, near a place.
-fn foot(jet: impl Fn(f64) -> Place, p: DVec3, near: f64, range: (f64, f64)) -> (f64, f64) {
+fn foot(jet: impl Fn(f64) -> BorderJet, p: DVec3, near: f64, range: (f64, f64)) -> (f64, f64) {
     let jet = |s: f64| {
         let (_, q, tangent) = jet(s);
         (q, tangent)
@@ -286,8 +287,8 @@ fn foot(jet: impl Fn(f64) -> Place, p: DVec3, near: f64, range: (f64, f64)) -> (
     down(&jet, p, near, range)
 }
 
-/// Walks the stretch that two borders share.
-fn contact(a: &Border, b: &Border, joins: &Joins, segment: usize) -> Contact {
+/// Gap and angle along the segment that two borders share.
+fn contact(a: &SegmentSide, b: &SegmentSide, joins: &Joins, segment: usize) -> Contact {
     let steps = STEPS.max(STEPS_A_SPAN * a.spans().max(b.spans()));
     let at = |f: f64| {
         let (uv, p, _) = a.jet(a.station(f));

@@ -10,7 +10,7 @@ use crate::surface::{Side, Surface, chain_breaks};
 const ORDER: usize = 10;
 
 /// A border: the chain that carries it, or a line in (u, v).
-enum Way {
+enum BorderLine {
     Chain(Chain, f64, f64),
     Line(DVec2, DVec2),
     None,
@@ -19,7 +19,7 @@ enum Way {
 /// All borders of a trimmed surface.
 pub(super) struct Border<'a> {
     surface: &'a Surface,
-    ways: Vec<Way>,
+    ways: Vec<BorderLine>,
     rule: Vec<(f64, f64)>,
 }
 
@@ -27,9 +27,9 @@ impl<'a> Border<'a> {
     /// The borders of a trimmed surface.
     pub fn new(surface: &'a Surface) -> Self {
         let way = |k: usize| match (surface.side(k), surface.border_line(k)) {
-            (_, Some((a, b))) => Way::Line(a.into(), b.into()),
-            (Side::Chain { chain, from, to }, None) => Way::Chain(chain, from, to),
-            _ => Way::None,
+            (_, Some((a, b))) => BorderLine::Line(a.into(), b.into()),
+            (Side::Chain { chain, from, to }, None) => BorderLine::Chain(chain, from, to),
+            _ => BorderLine::None,
         };
         Self { surface, ways: (0..surface.n_sides()).map(way).collect(), rule: gauss_legendre(ORDER) }
     }
@@ -39,7 +39,7 @@ impl<'a> Border<'a> {
         let mut next = 0;
         let steps = |k: usize| -> Vec<(usize, (f64, f64))> {
             let mut stops = vec![0.0, 1.0];
-            if let Way::Chain(chain, from, to) = &self.ways[k] {
+            if let BorderLine::Chain(chain, from, to) = &self.ways[k] {
                 stops.extend(chain_breaks(chain).into_iter().map(|f| (f - from) / (to - from)));
             }
             stops.retain(|t| (0.0..=1.0).contains(t));
@@ -50,7 +50,7 @@ impl<'a> Border<'a> {
         let mut one = |n: usize| {
             let range = next..next + n;
             next += n;
-            range.filter(|k| !matches!(self.ways[*k], Way::None)).flat_map(steps).collect()
+            range.filter(|k| !matches!(self.ways[*k], BorderLine::None)).flat_map(steps).collect()
         };
         self.surface.loops().into_iter().map(&mut one).collect()
     }
@@ -58,9 +58,9 @@ impl<'a> Border<'a> {
     /// (u, v) at a share of a border.
     pub fn at(&self, k: usize, t: f64) -> DVec2 {
         match &self.ways[k] {
-            Way::Line(a, b) => a.lerp(*b, t),
-            Way::Chain(_, from, to) => self.surface.border_place(k, from + (to - from) * t).unwrap_or_default().into(),
-            Way::None => DVec2::ZERO,
+            BorderLine::Line(a, b) => a.lerp(*b, t),
+            BorderLine::Chain(_, from, to) => self.surface.border_place(k, from + (to - from) * t).unwrap_or_default().into(),
+            BorderLine::None => DVec2::ZERO,
         }
     }
 
@@ -68,14 +68,14 @@ impl<'a> Border<'a> {
     pub fn place(&self, k: usize, t: f64) -> (DVec2, DVec2) {
         let at = self.at(k, t);
         let way = match &self.ways[k] {
-            Way::Line(a, b) => *b - *a,
-            Way::Chain(chain, from, to) => {
+            BorderLine::Line(a, b) => *b - *a,
+            BorderLine::Chain(chain, from, to) => {
                 let (jet, d) = (self.surface.jet(at.x, at.y), chain.jet(from + (to - from) * t).d1 * (to - from));
                 let (e, g, m) = (jet.du.length_squared(), jet.dv.length_squared(), jet.du.dot(jet.dv));
                 let (x, y) = (jet.du.dot(d), jet.dv.dot(d));
                 DVec2::new(g * x - m * y, e * y - m * x) / (e * g - m * m)
             }
-            Way::None => DVec2::ZERO,
+            BorderLine::None => DVec2::ZERO,
         };
         (at, if way.is_finite() { way } else { DVec2::ZERO })
     }

@@ -28,13 +28,13 @@ pub(super) struct Arc {
 }
 
 /// A place on the sides of a triangle: which side, and which share of it.
-type Place = (usize, f64);
+type SidePlace = (usize, f64);
 
 /// A way of a border through a triangle, from side to side.
 #[derive(Clone, Debug)]
 struct Crossing {
-    from: Place,
-    to: Place,
+    from: SidePlace,
+    to: SidePlace,
     parts: Vec<(usize, (f64, f64))>,
 }
 
@@ -100,7 +100,7 @@ impl Tiles {
         ((p - t[side]).dot(way) / way.length_squared()).clamp(0.0, 1.0)
     }
 
-    fn place(&self, n: usize, (side, share): Place) -> DVec2 {
+    fn place(&self, n: usize, (side, share): SidePlace) -> DVec2 {
         let t = &self.corners[n];
         t[side].lerp(t[(side + 1) % 3], share)
     }
@@ -142,7 +142,7 @@ impl<'a> Cut<'a> {
     }
 
     /// Cones over the sides of a triangle from one place to another, counter-clockwise; triangles beyond whole sides are kept.
-    fn along_sides(&mut self, tiles: &Tiles, n: usize, (from, to): (Place, Place), reached: &mut VecDeque<usize>) {
+    fn along_sides(&mut self, tiles: &Tiles, n: usize, (from, to): (SidePlace, SidePlace), reached: &mut VecDeque<usize>) {
         let (mut at, mut left) = (from, 4);
         while left > 0 {
             left -= 1;
@@ -182,16 +182,16 @@ impl<'a> Cut<'a> {
 struct Ways {
     crossings: BTreeMap<usize, Vec<Crossing>>,
     /// Loops that stay in one triangle, with the triangle.
-    closed: Vec<(usize, Loop)>,
+    closed: Vec<(usize, BorderParts)>,
 }
 
 /// Parts of borders, each with its ends.
-type Loop = Vec<(usize, (f64, f64))>;
+type BorderParts = Vec<(usize, (f64, f64))>;
 
 /// From where a border leaves a triangle to where the next one enters it, counter-clockwise; `None` where two go to one.
-fn kept_sides(crossings: &[Crossing]) -> Option<Vec<(Place, Place)>> {
-    let before = |a: &Place, b: &Place| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1));
-    let mut entries: Vec<Place> = crossings.iter().map(|way| way.from).collect();
+fn kept_sides(crossings: &[Crossing]) -> Option<Vec<(SidePlace, SidePlace)>> {
+    let before = |a: &SidePlace, b: &SidePlace| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1));
+    let mut entries: Vec<SidePlace> = crossings.iter().map(|way| way.from).collect();
     entries.sort_by(before);
     let mut used = vec![false; entries.len()];
     let mut found = Vec::with_capacity(entries.len());
@@ -217,7 +217,7 @@ fn follow(tiles: &Tiles, border: &Border, steps: &[(usize, (f64, f64))], ways: &
     let mut parts: Vec<(usize, (f64, f64))> = Vec::new();
     // Where the first triangle was left: triangle, step, share. What is before it is met again at the end.
     let mut first: Option<(usize, usize)> = None;
-    let mut entry: Place = (0, 0.0);
+    let mut entry: SidePlace = (0, 0.0);
     let mut crossings = 0;
     for (round, k) in (0..2 * steps.len()).map(|n| (n / steps.len(), n % steps.len())) {
         if round == 1 && first.is_none() {

@@ -130,14 +130,14 @@ pub fn nearest(track: &Track, point: DVec3, start: f64, range: (f64, f64)) -> f6
 
 /// A part of a track.
 #[derive(Clone, Copy)]
-pub struct Piece<'a> {
+pub struct TrackPart<'a> {
     /// The track.
     pub track: &'a Track,
     /// Arc lengths on it, ascending.
     pub s: (f64, f64),
 }
 
-impl Piece<'_> {
+impl TrackPart<'_> {
     /// Point at a share 0…1 of its length.
     pub fn point(&self, f: f64) -> DVec3 {
         self.track.point(self.s.0 + (self.s.1 - self.s.0) * f)

@@ -26,7 +26,7 @@ pub struct Imprint {
 crate::content!(Imprint { curves, points });
 
 /// Two surfaces that may touch beside the edges that they share.
-pub(super) struct Met {
+pub(super) struct TouchingPair {
     pub pair: (SurfaceId, SurfaceId),
     /// The curves in which they cross.
     pub curves: Vec<Chain>,
@@ -102,14 +102,14 @@ impl Model {
         network: &Network,
         tolerance: &Tolerance,
         job: &Job,
-    ) -> Result<Vec<Met>> {
+    ) -> Result<Vec<TouchingPair>> {
         let pairs = self.near_pairs(listed, tolerance);
         par::try_map(pairs.len(), |k| {
             job.go_on()?;
             let (pair, shared) = &pairs[k];
             let surface = |s: SurfaceId| &self.surfaces[s.index()].surface;
             let (a, b) = (surface(pair.0), surface(pair.1));
-            let none = || Ok(Met { pair: *pair, curves: Vec::new() });
+            let none = || Ok(TouchingPair { pair: *pair, curves: Vec::new() });
             let found = match with_surfaces(std::slice::from_ref(a), std::slice::from_ref(b), origin, tolerance) {
                 Ok(common) => common.curves,
                 Err(fault) if fault.code().0 == COINCIDE => return none(),
@@ -125,7 +125,7 @@ impl Model {
             for curve in found {
                 curves.extend(beside(&curve, &ways, tolerance)?);
             }
-            Ok(Met { pair: *pair, curves })
+            Ok(TouchingPair { pair: *pair, curves })
         })
     }
 

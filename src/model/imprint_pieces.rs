@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use glam::{DVec2, DVec3};
 
-use super::imprint::{Met, beside};
+use super::imprint::{TouchingPair, beside};
 use super::measure::area_within;
 use super::topology::{EdgeId, Model, SurfaceId};
 use crate::base::bbox::Box3;
@@ -68,7 +68,7 @@ impl Model {
     }
 
     /// The curves that cut a surface: those in which it crosses others, and edges of others that lie on it.
-    fn cutters(&self, of: SurfaceId, met: &[Met], network: &Network, tolerance: &Tolerance) -> Result<Vec<Chain>> {
+    fn cutters(&self, of: SurfaceId, met: &[TouchingPair], network: &Network, tolerance: &Tolerance) -> Result<Vec<Chain>> {
         let surface = &self.surfaces[of.index()].surface;
         let own = met.iter().filter(|m| m.pair.0 == of || m.pair.1 == of);
         let mut edges: BTreeSet<EdgeId> = BTreeSet::new();

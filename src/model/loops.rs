@@ -11,18 +11,18 @@ use crate::surface::{Domain, Side, Surface};
 type Edges = Vec<Option<(EdgeId, bool)>>;
 
 /// What becomes a piece: its edge, its side and its way.
-type Entry = (Option<(EdgeId, bool)>, usize, Way);
+type PieceSource = (Option<(EdgeId, bool)>, usize, PieceGeometry);
 
 /// The way of a piece over its own face.
 #[derive(Clone, Debug)]
-enum Way {
+enum PieceGeometry {
     /// A straight line in (u, v).
     Line(Trace),
     /// A run of a chain along a border (by number) of a face without a map, between two fractions.
     Flat(Box<Surface>, usize, Chain, (f64, f64)),
 }
 
-impl Way {
+impl PieceGeometry {
     fn length(&self) -> f64 {
         match self {
             Self::Line(trace) => trace.length(),
@@ -69,7 +69,7 @@ pub struct Piece {
     pub from: (f64, f64),
     /// (u, v) where it ends.
     pub to: (f64, f64),
-    way: Way,
+    way: PieceGeometry,
 }
 
 impl Piece {
@@ -96,7 +96,7 @@ pub struct Loop {
 
 impl Loop {
     /// Ways one after the other; one without an edge is a pole.
-    fn of(ways: Vec<Entry>) -> Self {
+    fn of(ways: Vec<PieceSource>) -> Self {
         let (mut pieces, mut length) = (Vec::new(), 0.0);
         for (edge, side, way) in ways {
             let whole = way.length();
@@ -165,7 +165,7 @@ impl Model {
     }
 
     /// Edges of a side that is a line in (u, v). Only the sides of a triangle are in several pieces; their corners are found by length.
-    fn lines(&self, patch: PatchId, record: &Patch, side: usize, edges: &Edges) -> Vec<Way> {
+    fn lines(&self, patch: PatchId, record: &Patch, side: usize, edges: &Edges) -> Vec<PieceGeometry> {
         let surface = &self.surfaces[record.surface.index()].surface;
         let corners = self.corners(patch);
         let (a, b) = (corners[side], corners[(side + 1) % corners.len()]);
@@ -174,23 +174,23 @@ impl Model {
         let mut from = a;
         let way = |(n, end): (usize, &f64)| {
             let to = if n + 1 == edges.len() { b } else { whole.uv(whole.at_length(end * whole.length() / total)) };
-            Way::Line(Trace::new(surface, std::mem::replace(&mut from, to), to))
+            PieceGeometry::Line(Trace::new(surface, std::mem::replace(&mut from, to), to))
         };
         ends.iter().enumerate().map(way).collect()
     }
 
     /// Edges of a side of a plane without a map: runs of the chain along it.
-    fn flat(&self, surface: &Surface, side: usize, edges: &Edges) -> Vec<Way> {
+    fn flat(&self, surface: &Surface, side: usize, edges: &Edges) -> Vec<PieceGeometry> {
         let Side::Chain { chain, from, to } = surface.side(side) else {
             // A straight line in (u, v): a natural border that no curve carries, or a pole.
             let Some((from, to)) = surface.border_line(side) else { return Vec::new() };
-            return edges.iter().map(|_| Way::Line(Trace::new(surface, from, to))).collect();
+            return edges.iter().map(|_| PieceGeometry::Line(Trace::new(surface, from, to))).collect();
         };
         let (ends, total) = self.shares(edges);
         let mut before = from;
         let way = |(n, end): (usize, &f64)| {
             let after = if n + 1 == edges.len() { to } else { from + (to - from) * end / total };
-            Way::Flat(Box::new(surface.clone()), side, chain.clone(), (std::mem::replace(&mut before, after), after))
+            PieceGeometry::Flat(Box::new(surface.clone()), side, chain.clone(), (std::mem::replace(&mut before, after), after))
         };
         ends.iter().enumerate().map(way).collect()
     }

@@ -44,7 +44,7 @@ impl Model {
     ///
     /// Fails with E413 where it cannot be told whether one skin lies inside another one.
     pub(super) fn turn_outwards(&self, components: &mut [Component], tolerance: &Tolerance) -> Result<()> {
-        let mut skins: Vec<Skin> = components.iter().map(|c| self.skin(c)).collect();
+        let mut skins: Vec<ClosedSkin> = components.iter().map(|c| self.skin(c)).collect();
         for skin in &mut skins {
             if measure::points_inwards(&skin.faces) == Some(true) {
                 skin.turn();
@@ -63,7 +63,7 @@ impl Model {
     /// W667 for each two skins of a shell that touch, cross or lie on each other.
     ///
     /// Fails with E413 where that cannot be told of any two of their faces.
-    pub(super) fn tell_touching(
+    pub(super) fn report_touching(
         &self,
         request: &ShellRequest,
         skins: &[Component],
@@ -103,7 +103,7 @@ impl Model {
         self.skin(outer).holds(&self.skin(inner), tolerance)
     }
 
-    fn skin(&self, component: &Component) -> Skin {
+    fn skin(&self, component: &Component) -> ClosedSkin {
         let surface = |id: SurfaceId| self.surfaces[id.index()].surface.clone();
         let faces: Vec<(Surface, bool)> = component.faces.iter().map(|(id, other)| (surface(*id), *other)).collect();
         let hull = faces.iter().fold(Box3::EMPTY, |all, (s, _)| all.union(s.hull()));
@@ -111,7 +111,7 @@ impl Model {
         let loops: Vec<_> = patches.iter().take(POINTS).map(|p| self.loop_of(*p)).collect();
         // A few faces are looked at in several places each.
         let points = PLACES.iter().flat_map(|f| loops.iter().map(|around| around.at(*f).1)).take(POINTS).collect();
-        Skin { faces, hull, points }
+        ClosedSkin { faces, hull, points }
     }
 }
 
@@ -132,14 +132,14 @@ fn touching(a: &Surface, b: &Surface, tolerance: &Tolerance) -> Result<Option<(T
 }
 
 /// Faces that close.
-struct Skin {
+struct ClosedSkin {
     faces: Vec<(Surface, bool)>,
     hull: Box3,
     /// Some points on its faces.
     points: Vec<DVec3>,
 }
 
-impl Skin {
+impl ClosedSkin {
     fn turn(&mut self) {
         self.faces.iter_mut().for_each(|(_, other)| *other = !*other);
     }

@@ -42,7 +42,7 @@ pub(super) struct Pieces {
 
 /// Where a line runs: side number, or a line inside.
 #[derive(Clone, Copy)]
-enum Place {
+enum LinePlace {
     Side(usize),
     Inside,
 }
@@ -106,11 +106,11 @@ impl Cutter<'_> {
         let mut along_u = Vec::new();
         for (j, &v) in vs.iter().enumerate() {
             let place = if j == 0 {
-                Place::Side(0)
+                LinePlace::Side(0)
             } else if j == nv {
-                Place::Side(2)
+                LinePlace::Side(2)
             } else {
-                Place::Inside
+                LinePlace::Inside
             };
             let corners: Vec<_> = us.iter().enumerate().map(|(i, &u)| ((u, v), corner(i, j))).collect();
             along_u.push(self.line(place, &corners));
@@ -118,11 +118,11 @@ impl Cutter<'_> {
         let mut along_v = Vec::new();
         for (i, &u) in us.iter().enumerate() {
             let place = if i == 0 {
-                Place::Side(3)
+                LinePlace::Side(3)
             } else if i == nu {
-                Place::Side(1)
+                LinePlace::Side(1)
             } else {
-                Place::Inside
+                LinePlace::Inside
             };
             let corners: Vec<_> = vs.iter().enumerate().map(|(j, &v)| ((u, v), corner(i, j))).collect();
             along_v.push(self.line(place, &corners));
@@ -156,7 +156,7 @@ impl Cutter<'_> {
                 self.pieces.vertices.push(self.surface.point(u, v));
             }
             line.push((corners[last], last));
-            let edges = self.line(Place::Side(k), &line).into_iter().flat_map(|side| side.edges).collect();
+            let edges = self.line(LinePlace::Side(k), &line).into_iter().flat_map(|side| side.edges).collect();
             sides.push(RawSide { edges, pole: None });
         }
         self.pieces.patches.push(RawPatch { u: (0.0, 1.0), v: (0.0, 1.0), sides });
@@ -244,8 +244,8 @@ impl Cutter<'_> {
     }
 
     /// The edges between neighbouring corners of a line, as one side each; poles have none.
-    fn line(&mut self, place: Place, corners: &[((f64, f64), usize)]) -> Vec<RawSide> {
-        if let Place::Side(k) = place
+    fn line(&mut self, place: LinePlace, corners: &[((f64, f64), usize)]) -> Vec<RawSide> {
+        if let LinePlace::Side(k) = place
             && let Side::Pole(_) = self.surface.side(k)
         {
             return corners.windows(2).map(|w| RawSide { edges: Vec::new(), pole: Some(w[0].1) }).collect();
@@ -267,8 +267,8 @@ impl Cutter<'_> {
     }
 
     /// The chain a line lies on, when its links are known to the network.
-    fn support(&self, place: Place, corners: &[((f64, f64), usize)]) -> Option<OnChain> {
-        if let Place::Side(k) = place {
+    fn support(&self, place: LinePlace, corners: &[((f64, f64), usize)]) -> Option<OnChain> {
+        if let LinePlace::Side(k) = place {
             let along_u = k % 2 == 0 && self.surface.domain() == Domain::Square || k == 0;
             let parameter = |uv: (f64, f64)| if along_u { uv.0 } else { uv.1 };
             // A seam lies on the chain of the opposite side.

@@ -1,14 +1,14 @@
 //! Segments of edges: what is left when every edge is cut where a corner of another one lies on it [Yoo & Yoon 2000].
 //!
 //! One long side may meet several shorter ones (a non-conformal join). The sides keep their own edges; their segments are
-//! shared, so that shells know which stretches are free and meshes divide each stretch once. How near borders must be to be
+//! shared, so that shells know which segments are free and meshes divide each segment once. How near borders must be to be
 //! one is said by each of them: the model's tolerance, or what a shell of imported faces allows.
 
 use std::collections::BTreeMap;
 
 use glam::DVec3;
 
-use super::feet::{Index, Piece, stations};
+use super::feet::{Index, TrackPart, stations};
 use super::gather::{Station, gather};
 use super::trace::Track;
 use crate::base::job;
@@ -16,7 +16,7 @@ use crate::base::math::compare_points;
 use crate::base::par;
 use crate::base::tolerance::Tolerance;
 
-/// A stretch between two neighbouring junctions.
+/// A part of an edge between two neighbouring junctions.
 #[derive(Clone, Debug)]
 pub struct Segment {
     /// First and last junction.
@@ -36,7 +36,7 @@ impl Segment {
     }
 }
 
-/// An segment as a part of a track.
+/// A segment as a part of a track.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SegmentUse {
     /// The segment.
@@ -126,14 +126,14 @@ impl Stops {
         Self { points, group, first, of_track }
     }
 
-    /// Tracks with arc lengths at which they turn back along themselves: in the middle of a stretch from a junction to the same one
+    /// Tracks with arc lengths at which they turn back along themselves: in the middle of a segment from a junction to the same one
     /// whose halves are the same way there and back. Cut there, the halves are one segment.
     fn turns(&self, parts: &[Part]) -> Vec<(usize, f64)> {
         let of_part = |n: usize| {
             let part = &parts[n];
             let turn = |w: &[(f64, usize)]| {
                 let middle = 0.5 * (w[0].0 + w[1].0);
-                let half = |s: (f64, f64)| Piece { track: &part.track, s };
+                let half = |s: (f64, f64)| TrackPart { track: &part.track, s };
                 let back = w[0].1 == w[1].1 && half((w[0].0, middle)).off(&half((middle, w[1].0)), true).0 <= part.near;
                 back.then_some((n, middle))
             };
@@ -236,11 +236,11 @@ impl Joiner<'_> {
 
     /// The segment that a piece lies on, with whether it runs against it.
     fn find(&self, raw: &Raw) -> Option<(usize, bool)> {
-        let here = Piece { track: &self.parts[raw.part].track, s: raw.s };
+        let here = TrackPart { track: &self.parts[raw.part].track, s: raw.s };
         let known = self.same.get(&(raw.ends.0.min(raw.ends.1), raw.ends.0.max(raw.ends.1)))?;
         known.iter().find_map(|id| {
             let segment = &self.result.segments[*id];
-            let there = Piece { track: &self.parts[segment.track].track, s: segment.s };
+            let there = TrackPart { track: &self.parts[segment.track].track, s: segment.s };
             let near = self.parts[raw.part].near.min(self.parts[segment.track].near);
             let against = if raw.ends.0 == raw.ends.1 { here.ring_against(&there) } else { raw.ends != segment.ends };
             (here.off(&there, against).0 <= near).then_some((*id, against))

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 
-use super::feet::Piece;
+use super::feet::TrackPart;
 use super::measure;
 use super::segments::Segments;
 use super::shells::{Joins, ShellRequest};
@@ -85,11 +85,11 @@ impl Seams<'_> {
         self.model.patches[user.0.index()].surface
     }
 
-    fn piece(&self, part: usize, s: (f64, f64)) -> Piece<'_> {
-        Piece { track: &self.joins.parts[part].track, s }
+    fn piece(&self, part: usize, s: (f64, f64)) -> TrackPart<'_> {
+        TrackPart { track: &self.joins.parts[part].track, s }
     }
 
-    /// Where the borders of an segment are furthest from the one that gives its geometry.
+    /// Where the borders of a segment are furthest from the one that gives its geometry.
     fn widest(&self) -> Option<Gap> {
         let mut found: Option<Gap> = None;
         for (part, uses) in self.joins.pieces.of_track.iter().enumerate() {

@@ -35,8 +35,8 @@ pub struct SharedEdge {
     pub faces: Vec<PatchId>,
     /// First and last vertex.
     pub ends: (VertexId, VertexId),
-    /// The edge of the model that it is told by: one that it is the whole of, if any.
-    pub told: EdgeId,
+    /// The edge of the model whose number it has: one that it is the whole of, if any.
+    pub named_by: EdgeId,
     /// How far apart the borders that run there may be, model units.
     pub near: f64,
 }
@@ -140,7 +140,7 @@ impl Model {
             courses: vec![vec![part]],
             faces: record.users.iter().map(|u| u.0).collect(),
             ends: record.vertices,
-            told: edge,
+            named_by: edge,
             near: 0.0,
         }
     }
@@ -207,7 +207,7 @@ struct Sharing<'a> {
 }
 
 /// Segments one after the other that the same tracks run along, each with whether it is run against.
-type Run = Vec<(usize, bool)>;
+type SegmentRun = Vec<(usize, bool)>;
 
 impl<'a> Sharing<'a> {
     fn new(model: &'a Model, joins: &'a Joins, faces: &[PatchId], near: f64) -> Self {
@@ -256,9 +256,9 @@ impl<'a> Sharing<'a> {
     }
 
     /// The runs of a track, in its direction or against it.
-    fn runs(&self, track: usize, against: bool) -> Vec<Run> {
+    fn runs(&self, track: usize, against: bool) -> Vec<SegmentRun> {
         let uses = &self.joins.pieces.of_track[track];
-        let steps: Run = if against {
+        let steps: SegmentRun = if against {
             uses.iter().rev().map(|u| (u.segment, !u.against)).collect()
         } else {
             uses.iter().map(|u| (u.segment, u.against)).collect()
@@ -270,7 +270,7 @@ impl<'a> Sharing<'a> {
     fn edge(&self, track: usize, run: &[(usize, bool)]) -> SharedEdge {
         let segments = &self.joins.pieces.segments;
         let tracks = &self.on[run[0].0];
-        // As in meshes: the border that gives the geometry of the stretches, where one gives that of all.
+        // As in meshes: the border that gives the geometry of the segments, where one gives that of all.
         let giver = segments[run[0].0].track;
         let one = tracks.contains(&giver) && run.iter().all(|(segment, _)| segments[*segment].track == giver);
         let giver = if one && self.course(giver, run).len() == 1 { giver } else { track };
@@ -294,8 +294,8 @@ impl<'a> Sharing<'a> {
         faces.sort_by_key(|face| self.order.get(face).copied());
         let whole = |part: &&EdgePart| part.s == (0.0, self.model.edges[part.edge.index()].length);
         let mut lone = courses.iter().filter(|course| course.len() == 1).map(|course| &course[0]);
-        let told = lone.find(whole).map_or(self.joins.edges[giver], |part| part.edge);
-        SharedEdge { courses, faces, ends, told, near: self.near }
+        let named_by = lone.find(whole).map_or(self.joins.edges[giver], |part| part.edge);
+        SharedEdge { courses, faces, ends, named_by, near: self.near }
     }
 
     /// The parts of a track along a run.

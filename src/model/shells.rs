@@ -37,7 +37,7 @@ pub(super) struct Sewn {
 }
 
 impl Joins {
-    /// The point in the middle of an segment.
+    /// The point in the middle of a segment.
     pub fn middle(&self, segment: usize) -> DVec3 {
         let segment = &self.pieces.segments[segment];
         self.parts[segment.track].track.point(0.5 * (segment.s.0 + segment.s.1))
@@ -47,7 +47,7 @@ impl Joins {
 impl Model {
     /// A shell of surfaces, oriented so that neighbours use an edge in opposite senses; free edges are a note.
     ///
-    /// Stretches that a long side shares with several shorter ones count as joined. A closed shell points out of the material,
+    /// Segments that a long side shares with several shorter ones count as joined. A closed shell points out of the material,
     /// in several skins where it has cavities or lies in pieces; in an open one the first surface of the list keeps its side. Borders up to [`Model::reach`] apart are one edge; what that moved is a note. Fails with E616 (one-sided),
     /// E617 (three faces at an edge), E618 (open and not connected) or E711 (borders just beyond a stated reach).
     pub fn shell(&self, request: &ShellRequest, network: &Network, tolerance: &Tolerance, sink: &mut Vec<Fault>) -> Result<Shell> {
@@ -140,7 +140,7 @@ impl Model {
         self.surfaces[surface.index()].surface.origin()
     }
 
-    /// E617 where more than two faces share a stretch.
+    /// E617 where more than two faces share a segment.
     fn manifold(&self, request: &ShellRequest, joins: &Joins, usages: &[Vec<Usage>]) -> Result<()> {
         for (segment, users) in usages.iter().enumerate() {
             if users.len() > 2 {
@@ -168,7 +168,7 @@ impl Model {
                     return Err(self.not_connected(first, apart));
                 }
                 if !request.branches {
-                    self.tell_touching(request, &components, tolerance, sink)?;
+                    self.report_touching(request, &components, tolerance, sink)?;
                 }
                 let (mut closed, open): (Vec<Component>, Vec<_>) = components.into_iter().partition(|c| c.closed);
                 self.turn_outwards(&mut closed, tolerance)?;

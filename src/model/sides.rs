@@ -9,7 +9,7 @@ use crate::base::fault::Result;
 use crate::base::tolerance::Tolerance;
 use crate::network::Network;
 
-/// One use of an segment by a surface: `true` where the surface's loop runs against the segment.
+/// One use of a segment by a surface: `true` where the surface's loop runs against the segment.
 pub(super) type Usage = (SurfaceId, bool);
 
 /// Two faces that cannot agree on a side, and the segment between them.
@@ -42,7 +42,7 @@ pub(super) fn usages(model: &Model, joins: &Joins, is_member: impl Fn(SurfaceId,
     usages
 }
 
-/// Components of some faces, in the order of their first ones. An segment that more than two faces use joins none of them.
+/// Components of some faces, in the order of their first ones. A segment that more than two faces use joins none of them.
 pub(super) fn components(listed: &[SurfaceId], usages: &[Vec<Usage>]) -> Vec<Component> {
     let count = listed.iter().map(|s| s.index() + 1).max().unwrap_or(0);
     let mut neighbours: Vec<Vec<(SurfaceId, bool, usize)>> = vec![Vec::new(); count];

@@ -27,7 +27,7 @@ const ENDING: &str = ".kept";
 
 /// What a file begins with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Head {
+struct FileHeader {
     magic: [u8; 8],
     format: u32,
     key: u128,
@@ -35,9 +35,9 @@ struct Head {
     checksum: u128,
 }
 
-crate::plain!(Head { magic, format, key, length, checksum });
+crate::plain!(FileHeader { magic, format, key, length, checksum });
 
-/// Bytes of a [`Head`].
+/// Bytes of a [`FileHeader`].
 const HEAD: usize = 8 + 4 + 16 + 8 + 16;
 
 /// A folder of results.
@@ -46,15 +46,15 @@ pub struct Cache {
     folder: PathBuf,
     limit: u64,
     staging: Staging,
-    state: Mutex<State>,
+    state: Mutex<CacheState>,
 }
 
 #[derive(Debug, Default)]
-struct State {
+struct CacheState {
     found: usize,
     written: bool,
     trouble: Option<String>,
-    told: bool,
+    reported: bool,
 }
 
 impl Cache {
@@ -73,7 +73,7 @@ impl Cache {
         cache
     }
 
-    fn state(&self) -> MutexGuard<'_, State> {
+    fn state(&self) -> MutexGuard<'_, CacheState> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -86,11 +86,11 @@ impl Cache {
         self.state().found
     }
 
-    /// Why nothing can be kept there, in the system's words; told once.
+    /// Why nothing can be kept there, in the system's words; reported once.
     pub fn trouble(&self) -> Option<String> {
         let mut state = self.state();
-        let trouble = state.trouble.clone().filter(|_| !state.told);
-        state.told |= trouble.is_some();
+        let trouble = state.trouble.clone().filter(|_| !state.reported);
+        state.reported |= trouble.is_some();
         trouble
     }
 
@@ -115,7 +115,7 @@ impl Cache {
         let mut file = File::open(place).ok()?;
         let mut head = [0; HEAD];
         file.read_exact(&mut head).ok()?;
-        let head: Head = bytes::read(&head)?;
+        let head: FileHeader = bytes::read(&head)?;
         if (head.magic, head.format, head.key, head.length) != (MAGIC, FORMAT, key.0, length) {
             return None;
         }
@@ -129,7 +129,7 @@ impl Cache {
         if body.len() as u64 > self.limit / 4 || self.state().trouble.is_some() {
             return;
         }
-        let head = Head { magic: MAGIC, format: FORMAT, key: key.0, length: body.len() as u64, checksum: checksum_of(kind)(body) };
+        let head = FileHeader { magic: MAGIC, format: FORMAT, key: key.0, length: body.len() as u64, checksum: checksum_of(kind)(body) };
         let written = self.staging.write(&self.place(kind, key), &mut |out| {
             out.write_all(&bytes_of(&head))?;
             out.write_all(body)
@@ -270,6 +270,6 @@ mod tests {
 
     #[test]
     fn the_head_is_as_long_as_its_fields() {
-        assert_eq!(bytes_of(&Head { magic: MAGIC, format: 1, key: 2, length: 3, checksum: 4 }).len(), HEAD);
+        assert_eq!(bytes_of(&FileHeader { magic: MAGIC, format: 1, key: 2, length: 3, checksum: 4 }).len(), HEAD);
     }
 }

@@ -16,7 +16,7 @@ use crate::network::Chain;
 use crate::network::graph::Input;
 use crate::surface::Surface;
 
-/// Places in the (u, v) square that tell where a surface is.
+/// Places in the (u, v) square by which surfaces are ordered.
 const PLACES: [(f64, f64); 3] = [(0.5, 0.5), (0.0, 0.0), (1.0, 1.0)];
 
 /// Puts curves in order.

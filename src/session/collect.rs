@@ -84,7 +84,7 @@ pub fn chains<'p>(cx: &Cx, parts: &'p Parts, network: &Network, tolerance: &Tole
         let (place, first) = *places.entry(key).or_insert((rows.len(), n));
         match rows.get_mut(place) {
             None => rows.push((name, links, chain)),
-            // Of several texts that make one chain a declared name is told, then the first by name, whoever was declared first.
+            // Of several texts that make one chain a declared name is listed, then the first by name, whoever was declared first.
             Some(row) if first >= declared && rank(&name) < rank(&row.0) => *row = (name, links, chain),
             Some(_) => {}
         }
@@ -255,8 +255,8 @@ pub fn cell(value: &Value) -> Cell {
 
 /// A diagnostic with places as editors count, and behind it those that it stands for where they were kept.
 pub fn diagnostic(found: &Diagnostic, sources: &Sources) -> Vec<DiagnosticRow> {
-    let told: usize = found.folded.iter().map(|d| 1 + d.more).sum();
-    let first = diagnostic_row(found, 1 + found.more.saturating_sub(told), sources);
+    let listed: usize = found.folded.iter().map(|d| 1 + d.more).sum();
+    let first = diagnostic_row(found, 1 + found.more.saturating_sub(listed), sources);
     std::iter::once(first).chain(found.folded.iter().map(|d| diagnostic_row(d, 1 + d.more, sources))).collect()
 }
 

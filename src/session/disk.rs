@@ -170,7 +170,7 @@ impl Store for Disk {
         self.read.lock().unwrap_or_else(PoisonError::into_inner).iter().map(|path| same_file(path)).collect()
     }
 
-    fn told_place(&self, path: &str) -> String {
+    fn shown_place(&self, path: &str) -> String {
         let place = normal_form(&self.out.join(path)).unwrap_or_else(|| self.out.join(path));
         let here = std::env::current_dir().unwrap_or_default();
         let below = place.strip_prefix(&here).ok().map(Path::to_owned);

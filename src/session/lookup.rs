@@ -76,7 +76,7 @@ fn text_of_kind(name: &str) -> Option<String> {
     (TYPE_NAMES.contains(&name) && !members.is_empty()).then(|| format!("{name}, a type\n{members}"))
 }
 
-/// What a thing of this kind tells of itself; empty for words that are no kind.
+/// The fields of a thing of this kind; empty for words that are no kind.
 fn members_of(kind: &str) -> String {
     let mut found: Vec<&Builtin> = fields().filter(|f| f.params.first().is_some_and(|p| p.ty.signature() == kind)).collect();
     if found.is_empty() {

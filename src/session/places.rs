@@ -10,7 +10,7 @@ use crate::io::files::fault::FileFault;
 use crate::lang::eval::context::Cx;
 
 /// Says E812 for each file that several outputs of the script would write, and E813 for each output over the script, a
-/// module or a file that it imports; gives the files in question, as [`Store::file_of`] tells them apart: none of them is
+/// module or a file that it imports; gives the files in question, identified as by [`Store::file_of`]: none of them is
 /// written. `script` is the resolved name of the script.
 pub fn one_file_each(cx: &mut Cx, disk: &dyn Store, script: &str) -> BTreeSet<String> {
     let exports = cx.exports().into_iter().map(|spec| (spec.path_origin, spec.path));
@@ -19,7 +19,7 @@ pub fn one_file_each(cx: &mut Cx, disk: &dyn Store, script: &str) -> BTreeSet<St
     let mut files: Vec<(String, Vec<(Origin, String)>)> = Vec::new();
     let mut known: BTreeMap<String, usize> = BTreeMap::new();
     for (of, path) in outputs {
-        // What may not be written at all is told when it is tried.
+        // What may not be written at all is reported when it is tried.
         let Some(file) = disk.file_of(&path) else { continue };
         let place = *known.entry(file.clone()).or_insert(files.len());
         match files.get_mut(place) {

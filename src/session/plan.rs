@@ -225,7 +225,7 @@ impl Finder<'_> {
                 let mut said = Vec::new();
                 let built = self.scene.shell(shell, &self.tolerance, &mut said)?;
                 faces.add_shell(plan, shell, &built);
-                // What touches is told of the mesh where it is so there.
+                // What touches is reported for the mesh where it does so there.
                 sink.extend(said.into_iter().filter(|fault| !fault.code().0.starts_with('N') && fault.code().0 != "W667"));
             }
             Value::Curve(chain) => plan.curves.push((cx.name(chain.origin()), chain.clone())),
@@ -300,7 +300,7 @@ impl Finder<'_> {
 
 /// The name of an edge in files: that of the surface or curve that it lies on, and its number.
 pub(super) fn edge_name(cx: &Cx, chain: &Chain, edge: &SharedEdge) -> String {
-    format!("{}_edge_{}", cx.name(chain.origin()), edge.told.index() + 1)
+    format!("{}_edge_{}", cx.name(chain.origin()), edge.named_by.index() + 1)
 }
 
 /// The curve along an edge.

@@ -9,7 +9,7 @@ use serde::Serialize;
 /// Version of the report's shape.
 pub const VERSION: u32 = 1;
 
-/// All that `loft run --json` tells about one run.
+/// All that `loft run --json` gives about one run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Report {
     /// [`VERSION`].
@@ -230,7 +230,7 @@ pub struct Column {
 }
 
 impl Table {
-    /// The table as people see it: coordinates of points in this unit, the model's, as far as the tolerance tells them. The unit is
+    /// The table as people see it: coordinates of points in this unit, the model's, as far as the tolerance resolves them. The unit is
     /// that of the column, or stands in the row where each row has its own.
     pub fn rounded(mut self, tolerance: &Tolerance, unit: &str) -> Self {
         let own = self.columns.iter().position(|c| c.name == UNIT_COLUMN && c.unit.is_none());

@@ -107,7 +107,7 @@ impl<'r> Run<'r> {
         match std::str::from_utf8(self.task.text) {
             Ok(text) => {
                 let job = self.cx.job;
-                // Whether it was stopped is asked at the end.
+                // Whether it was stopped is checked at the end.
                 let all = || {
                     self.evaluate(text);
                     look(&mut self.cx);
@@ -116,7 +116,7 @@ impl<'r> Run<'r> {
                 let (_, over) = job.run(|| work::uncharged(all));
                 let (mut outcome, memory) = self.finish(over.as_ref().map(too_much_work));
                 if over.is_some() {
-                    // All that was not reached: the one reason is told already.
+                    // All that was not reached: the one reason is reported already.
                     outcome.report.unmade.clear();
                 }
                 (Outcome { over, ..outcome }, memory)

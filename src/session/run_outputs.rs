@@ -78,7 +78,7 @@ impl Run<'_> {
         self.report.renamed.append(&mut row.renamed);
         self.unnamed.extend(row.unnamed.drain(..).map(|what| format!("\"{}\" does without {what}", row.path)));
         if self.disk.outputs() == Outputs::Written {
-            row.place = self.disk.told_place(&row.path);
+            row.place = self.disk.shown_place(&row.path);
             self.report.outputs.push(row);
         }
     }

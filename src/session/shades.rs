@@ -1,4 +1,4 @@
-//! `shade:`: what the colours of faces tell.
+//! `shade:`: what the colours of faces show.
 
 use std::sync::Arc;
 
@@ -62,7 +62,7 @@ pub(super) fn paint(cx: &Cx, spec: &PictureSpec, drawing: &mut Drawing) -> Resul
         "size" => {
             needs(drawing, of, "`shade: size` colours the elements of a mesh, and none is drawn", "draw a mesh")?;
             let (low, high) = values(drawing).fold((f64::INFINITY, 0.0), |(l, h): (f64, f64), x| (l.min(x), h.max(x)));
-            // Elements of one size all the same are told by a scale from zero.
+            // Elements of one size all the same are shown by a scale from zero.
             let low = if high - low > 0.001 * high { low } else { 0.0 };
             let high = if high > low { high } else { low + 1.0 };
             drawing.scale = Some(Scale { title: "longest side".to_owned(), unit: unit.to_owned(), low, high, ramp: LITTLE_TO_MUCH });

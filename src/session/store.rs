@@ -20,13 +20,13 @@ pub trait Store: Files + Sync {
     fn outputs(&self) -> Outputs;
     /// The resolved name of the script itself, beside which its imports are looked for.
     fn script_name(&self, shown: &str) -> String;
-    /// What tells the file of an output from all others: its real folder and its name, letter case aside, since many
-    /// systems do not tell that apart; `None` where it may not stand.
+    /// The identity of the file of an output: its real folder and its name, letter case aside, since many
+    /// systems ignore that; `None` where it may not stand.
     fn file_of(&self, path: &str) -> Option<String>;
-    /// The files that were read, told apart as [`Store::file_of`] does.
+    /// The files that were read, identified as by [`Store::file_of`].
     fn files_read(&self) -> BTreeSet<String>;
     /// Where an output stands, for people: as seen from the working directory, in full where it is not below that.
-    fn told_place(&self, path: &str) -> String;
+    fn shown_place(&self, path: &str) -> String;
     /// Gives all staged outputs their names.
     fn commit(&self) -> io::Result<()>;
     /// Removes everything that was not committed.

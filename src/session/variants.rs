@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::base::text::real;
-use crate::io::tables::cell_places::Places;
+use crate::io::tables::cell_places::CellPlaces;
 use crate::io::tables::table::{Cell, Layout, Reading};
 use crate::io::tables::table_read::read;
 use crate::lang::declare::params::{SetCell, TableRow};
@@ -40,7 +40,7 @@ pub fn rows(file: &str, bytes: &[u8], sets: &[(String, String)]) -> Result<Vec<R
     if let Some((name, _)) = sets.iter().find(|(name, _)| header.contains(name)) {
         return Err(format!("`{name}` is set by the table and by --set"));
     }
-    let places = Places::new(bytes);
+    let places = CellPlaces::new(bytes);
     let (file, text, head): (Arc<str>, Arc<str>, _) = (file.into(), places.text.into(), places.first_line());
     let mut names = BTreeSet::new();
     let mut rows = Vec::new();

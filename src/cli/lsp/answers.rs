@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use super::document::Document;
 use super::model::Facts;
-use super::{names, text, told};
+use super::{names, results, text};
 use crate::lang::assist::About;
 
 /// What is needed before a request can be answered.
@@ -89,8 +89,8 @@ pub fn answer(document: &Document, facts: &Facts, request: &Request, others: &Ot
         "textDocument/semanticTokens/full" => text::colours(document),
         "textDocument/completion" => text::completion(document, facts, &request.params, others),
         "textDocument/signatureHelp" => text::signature(document, facts, position, others),
-        "textDocument/codeLens" => told::lenses(facts, document),
-        _ => told::actions(facts, document, &request.params["range"]),
+        "textDocument/codeLens" => results::lenses(facts, document),
+        _ => results::actions(facts, document, &request.params["range"]),
     })
 }
 
@@ -98,7 +98,7 @@ pub fn answer(document: &Document, facts: &Facts, request: &Request, others: &Ot
 fn hover(document: &Document, facts: &Facts, position: &Value, others: &Others<'_>) -> Value {
     let text = match about(document, facts, position, others) {
         Some(About::Words(words)) => words,
-        Some(About::Declared { name, line, docs }) => told::hover(facts, document, &name, &line, &docs),
+        Some(About::Declared { name, line, docs }) => results::hover(facts, document, &name, &line, &docs),
         None => return Value::Null,
     };
     json!({ "contents": { "kind": "markdown", "value": text.trim_end() } })

@@ -4,9 +4,9 @@ mod answers;
 mod document;
 mod model;
 mod names;
+mod results;
 mod server;
 mod text;
-mod told;
 
 use std::time::{Duration, Instant};
 

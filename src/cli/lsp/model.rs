@@ -1,4 +1,4 @@
-//! The evaluated model behind an open file: runs in a thread of its own, and what a run told.
+//! The evaluated model behind an open file: runs in a thread of its own, and what they find.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -22,7 +22,7 @@ use crate::session::run::Outcome;
 /// Names that are described in every run; in a larger script only those that were asked for are.
 const DESCRIBED: usize = 500;
 
-/// What is told of a name.
+/// A declared name: its keyword, its place and a line about it.
 #[derive(Clone, Debug)]
 pub struct About {
     pub keyword: Keyword,
@@ -37,7 +37,7 @@ pub struct Seen {
     pub revision: u64,
 }
 
-/// What a run told about a text.
+/// What a run found about a text.
 #[derive(Debug, Default)]
 pub struct Facts {
     /// The text's count of changes.
@@ -85,7 +85,7 @@ impl Facts {
         self.asked.as_ref().is_none_or(|asked| asked.contains(name))
     }
 
-    /// All names were told of.
+    /// There are lines about all names.
     pub fn knows_all(&self) -> bool {
         self.asked.is_none()
     }
@@ -102,8 +102,8 @@ impl Running {
         let (uri, revision, text, watched) = (document.uri.clone(), document.revision, document.text.clone(), job.clone());
         live.set_unsaved(unsaved);
         let work = move || {
-            let (mut names, mut all) = (Told::default(), true);
-            let ran = live.run(&text, &[], depth, &watched, &mut |cx| (names, all) = told(cx, &wanted));
+            let (mut names, mut all) = (Described::default(), true);
+            let ran = live.run(&text, &[], depth, &watched, &mut |cx| (names, all) = described(cx, &wanted));
             let facts = match ran {
                 Ok(outcome) if outcome.interrupted => None,
                 Ok(outcome) => Some(facts(outcome, names)),
@@ -119,7 +119,7 @@ impl Running {
         Some(Self { uri, revision, depth, job, thread })
     }
 
-    /// Asks it to stop; it comes to its end soon and tells nothing.
+    /// Asks it to stop; it ends soon and gives no facts.
     pub fn stop(&self) {
         self.job.cancel();
     }
@@ -128,13 +128,13 @@ impl Running {
         self.thread.is_finished()
     }
 
-    /// The model, and what the run told if it was not stopped; nothing after a bug that nobody caught.
+    /// The model, and what the run found if it was not stopped; nothing after a bug that nobody caught.
     pub fn finish(self) -> Option<(Live, Option<Facts>)> {
         self.thread.join().ok()
     }
 }
 
-fn facts(outcome: Outcome, (names, shapes): Told) -> Facts {
+fn facts(outcome: Outcome, (names, shapes): Described) -> Facts {
     let checks = &outcome.report.checks;
     Facts {
         names,
@@ -148,10 +148,10 @@ fn facts(outcome: Outcome, (names, shapes): Told) -> Facts {
 }
 
 /// Lines about names, and the kinds of their values.
-type Told = (BTreeMap<String, About>, Known);
+type Described = (BTreeMap<String, About>, Known);
 
-/// What is told of the names of a script, and whether there are lines about all of them.
-fn told(cx: &mut Cx<'_>, wanted: &BTreeSet<String>) -> (Told, bool) {
+/// The names of a script, and whether there are lines about all of them.
+fn described(cx: &mut Cx<'_>, wanted: &BTreeSet<String>) -> (Described, bool) {
     let symbols = cx.symbols();
     let all = symbols.len() <= DESCRIBED;
     let (mut out, mut shapes) = (BTreeMap::new(), Known::new());

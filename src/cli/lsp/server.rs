@@ -1,7 +1,7 @@
 //! Open files, what is asked about them, and when they are evaluated.
 //!
 //! Requests about the text alone are answered at once, also while a model runs. What needs the model waits for the run
-//! of the text as it stands; a change stops that run, and whoever waited is told that the text has changed.
+//! of the text as it stands; a change stops that run, and requests that wait are answered that the text has changed.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -13,13 +13,13 @@ use serde_json::{Value, json};
 use super::answers::{Need, Others, SERVED, answer, need};
 use super::document::Document;
 use super::model::{Facts, Running, model};
-use super::told;
+use super::results;
 use crate::session::disk::Unsaved;
 use crate::session::live::{Depth, Live};
 
 /// How long a text must rest before it is evaluated, and then before it is meshed.
 const REST: (Duration, Duration) = (Duration::from_millis(150), Duration::from_millis(300));
-/// How long a hover waits for the value of the text as it stands; then it is told the last one that is known.
+/// How long a hover waits for the value of the text as it stands; then it shows the last one that is known.
 const PATIENCE: Duration = Duration::from_millis(400);
 /// How often a run is looked after.
 const LOOK: Duration = Duration::from_millis(2);
@@ -156,11 +156,11 @@ impl<'c> Server<'c> {
             return;
         };
         let before = std::mem::replace(&mut open.facts, facts);
-        told::remember(&mut open.facts, before);
+        results::remember(&mut open.facts, before);
         if depth == DEPTHS[0] {
             open.due[1].get_or_insert(now + REST.1);
         }
-        let rows = told::diagnostics(&open.facts, &open.document);
+        let rows = results::diagnostics(&open.facts, &open.document);
         let params = json!({ "uri": uri, "version": open.document.version, "diagnostics": rows });
         self.send(Message::Notification(Notification::new("textDocument/publishDiagnostics".to_owned(), params)));
         self.answer_waiting(&uri, now);

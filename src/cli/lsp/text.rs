@@ -74,11 +74,11 @@ pub fn folds(document: &Document) -> Value {
 
 pub fn colours(document: &Document) -> Value {
     let mut data: Vec<usize> = Vec::new();
-    // The last place that was told, and its byte: counting from there, a line is walked over once.
+    // The last place that was given, and its byte: counting from there, each line is read once.
     let (mut line, mut column, mut before) = (0, 0, 0);
     for (span, paint) in painted(&document.text) {
         let (mut start, end) = (span.start as usize, span.end as usize);
-        // What runs over several lines is told line by line.
+        // What runs over several lines is given line by line.
         while start < end {
             let next = document.next_line(start).min(end);
             let text = document.text[start..next].trim_end_matches(['\n', '\r']);

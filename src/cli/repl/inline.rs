@@ -21,7 +21,7 @@ pub enum Way {
     },
 }
 
-/// Pixels of a row on a terminal that does not tell how wide it is.
+/// Pixels of a row on a terminal that does not report its width.
 const USUAL_WIDTH: usize = 800;
 
 impl Way {

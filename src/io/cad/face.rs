@@ -81,7 +81,7 @@ impl Face {
         }
         let mut loops = loops.into_iter();
         let outer = if known.has_outer { loops.next() } else { None };
-        // Round a closed surface the seam in an outer loop tells which side of the other loops is meant.
+        // Round a closed surface the seam in an outer loop decides which side of the other loops is meant.
         let seam_decides = surface.closed() != (false, false) && loops.len() > 0;
         let allowed = Allowance { seam: known.slack.max(2.0 * off.distance), free: ONE_BORDER * tolerance.point };
         let outer = outer.filter(|outer| seam_decides || !is_natural(base, &surface, outer, allowed, tolerance));

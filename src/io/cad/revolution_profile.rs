@@ -1,10 +1,10 @@
 //! Profiles that meet the axis about which they are turned: they are cut there, and one part makes the surface.
 //!
-//! | what tells which part is meant | the part |
+//! | what decides which part is meant | the part |
 //! |---|---|
 //! | the loops, or a vertex that bounds the face, lie on one part alone | that one |
 //! | all parts in question make the same surface | one along which a loop runs, else one that runs up the axis |
-//! | nothing, and the profile of a face closes | one that runs up the axis, which is told |
+//! | nothing, and the profile of a face closes | one that runs up the axis, which is reported |
 //! | nothing else, and there are no loops | all of them: the face is several surfaces |
 //! | nothing, and there are loops | none: the face is refused |
 //!

@@ -8,7 +8,7 @@ use crate::io::files::fault::FileFault;
 pub enum Loss {
     /// Something was left out that was asked for: what, in words. A warning.
     LeftOut(String),
-    /// Names that every mesh has are not in the file: which, in words. Told when asked.
+    /// Names that every mesh has are not in the file: which, in words. Reported on request.
     Unnamed(String),
     /// A set has another name in the file.
     Renamed(Renamed),

@@ -1,4 +1,4 @@
-//! Names that a format takes: each name of the model has one name in the file, and each change is told.
+//! Names that a format takes: each name of the model has one name in the file, and each change is reported.
 
 use std::collections::{BTreeMap, BTreeSet};
 

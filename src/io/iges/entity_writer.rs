@@ -282,7 +282,7 @@ impl Sheet {
 
     /// Writes the five sections.
     pub fn write(&self, global: &[String], out: &mut dyn Write) -> io::Result<()> {
-        let mut lines = Lines { out, letter: 'S', n: 0 };
+        let mut lines = LineWriter { out, letter: 'S', n: 0 };
         lines.put("Written by loft")?;
         for remark in &self.remarks {
             lines.put(remark)?;
@@ -353,13 +353,13 @@ fn wrapped(values: &[String], width: usize) -> Vec<String> {
     lines
 }
 
-struct Lines<'o> {
+struct LineWriter<'o> {
     out: &'o mut dyn Write,
     letter: char,
     n: usize,
 }
 
-impl Lines<'_> {
+impl LineWriter<'_> {
     fn section(&mut self, letter: char) {
         (self.letter, self.n) = (letter, 0);
     }

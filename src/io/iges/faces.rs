@@ -22,12 +22,12 @@ use crate::surface::Surface;
 
 /// Curves of a loop, and all that the file has of it in (u, v), those along poles too.
 #[derive(Clone, Debug, Default)]
-struct Run {
+struct CurveRun {
     borders: Vec<Border>,
     outline: Option<Vec<Curve>>,
 }
 
-impl Run {
+impl CurveRun {
     fn then(mut self, next: Self) -> Self {
         self.borders.extend(next.borders);
         self.outline = self.outline.zip(next.outline).map(|(mut a, b)| {
@@ -90,7 +90,7 @@ impl EntityTable {
         Ok(Face::inside(&base, surface, loops, known, &self.tolerance))
     }
 
-    /// A surface of which the axis cuts the profile: the part that is meant, and others where nothing bounds it; a guess is told.
+    /// A surface of which the axis cuts the profile: the part that is meant, and others where nothing bounds it; a guess is reported.
     pub(super) fn clear_of_axis(&mut self, d: Pointer, base: Base, loops: &FaceLoops) -> Result<(Base, Vec<Base>), Defect> {
         let Clear { base, also, doubt } = base.clear_of_axis(loops, self.slack(), &self.tolerance)?;
         if let Some(doubt) = doubt {
@@ -100,7 +100,7 @@ impl EntityTable {
     }
 
     /// The curves of a loop; (u, v) still in the file's parameters.
-    fn loop_of(&mut self, face: Pointer, d: Pointer, base: &Base) -> Result<Run, Defect> {
+    fn loop_of(&mut self, face: Pointer, d: Pointer, base: &Base) -> Result<CurveRun, Defect> {
         let k = self.place(d)?;
         let data = std::mem::replace(&mut self.decoded[k].data, Data::Busy);
         let made = match &data {
@@ -108,9 +108,9 @@ impl EntityTable {
             Data::Boundary { curves, .. } => {
                 let each = curves.iter().map(|c| {
                     let pieces = self.paired(face, c.space, &c.uv, base)?;
-                    Ok(if c.reversed { Run { borders: backwards(pieces.borders), ..pieces } } else { pieces })
+                    Ok(if c.reversed { CurveRun { borders: backwards(pieces.borders), ..pieces } } else { pieces })
                 });
-                each.collect::<Result<Vec<_>, Defect>>().map(|all| all.into_iter().fold(Run::none(), Run::then))
+                each.collect::<Result<Vec<_>, Defect>>().map(|all| all.into_iter().fold(CurveRun::none(), CurveRun::then))
             }
             Data::Loop(edges) => self.edges(face, edges, base),
             // A plane's border may be a curve itself.
@@ -129,13 +129,13 @@ impl EntityTable {
         Ok(made)
     }
 
-    fn on_surface(&mut self, face: Pointer, uv: Pointer, space: Pointer, base: &Base) -> Result<Run, Defect> {
+    fn on_surface(&mut self, face: Pointer, uv: Pointer, space: Pointer, base: &Base) -> Result<CurveRun, Defect> {
         let uv = if uv == 0 { Vec::new() } else { vec![uv] };
         self.paired(face, space, &uv, base)
     }
 
     /// A curve in space with its curves in (u, v), piece by piece; where the first is missing or damaged the others make it.
-    fn paired(&mut self, face: Pointer, space: Pointer, uv: &[Pointer], base: &Base) -> Result<Run, Defect> {
+    fn paired(&mut self, face: Pointer, space: Pointer, uv: &[Pointer], base: &Base) -> Result<CurveRun, Defect> {
         let in_uv: Result<Vec<Curve>, Defect> = uv.iter().map(|d| self.curve(*d, Place::UV)).collect();
         let in_uv = in_uv.map(|curves| curves.iter().flat_map(pieces).collect::<Vec<Curve>>());
         let outline = in_uv.as_ref().ok().filter(|curves| !curves.is_empty()).cloned();
@@ -151,7 +151,7 @@ impl EntityTable {
                 }
                 let in_uv = if in_uv.len() == pieces.len() { in_uv } else { Vec::new() };
                 let uv = in_uv.into_iter().map(Some).chain(std::iter::repeat(None));
-                Ok(Run { borders: pieces.into_iter().zip(uv).map(|(space, uv)| Border { space, uv }).collect(), outline })
+                Ok(CurveRun { borders: pieces.into_iter().zip(uv).map(|(space, uv)| Border { space, uv }).collect(), outline })
             }
             (Err(Defect(why)), Ok(in_uv)) if !in_uv.is_empty() => {
                 if space != 0 {
@@ -165,15 +165,15 @@ impl EntityTable {
                         made.push(Border { space, uv: Some(uv) });
                     }
                 }
-                Ok(Run { borders: made, outline })
+                Ok(CurveRun { borders: made, outline })
             }
             (Err(why), _) => Err(why),
         }
     }
 
     /// A loop of edges of a solid.
-    fn edges(&mut self, face: Pointer, edges: &[LoopEdge], base: &Base) -> Result<Run, Defect> {
-        let mut made = Run::none();
+    fn edges(&mut self, face: Pointer, edges: &[LoopEdge], base: &Base) -> Result<CurveRun, Defect> {
+        let mut made = CurveRun::none();
         for edge in edges.iter().filter(|e| !e.is_vertex) {
             let (list, index) = edge.edge;
             let Data::Edges(all) = self.data(list)? else {
@@ -185,7 +185,7 @@ impl EntityTable {
             if let [one] = pieces.borders.as_mut_slice() {
                 one.space = self.between(&found, &one.space);
             }
-            made = made.then(if edge.reversed { Run { borders: backwards(pieces.borders), ..pieces } } else { pieces });
+            made = made.then(if edge.reversed { CurveRun { borders: backwards(pieces.borders), ..pieces } } else { pieces });
         }
         Ok(made)
     }

@@ -49,7 +49,7 @@ fn write(deck: &Deck, out: &mut dyn Write) -> io::Result<Vec<Loss>> {
 }
 
 /// Nodes and elements that lie in the same surface (or curve) and the same sets.
-struct Entity {
+struct GeometryEntity {
     dimension: usize,
     /// From 1 in each dimension.
     tag: i32,
@@ -62,11 +62,11 @@ struct Entity {
 }
 
 /// All entities by dimension, each node in exactly one of them.
-fn entities(mesh: &Mesh) -> Vec<Entity> {
+fn entities(mesh: &Mesh) -> Vec<GeometryEntity> {
     let mut entities = points(mesh);
     for part in parts(mesh, Kind::Line) {
         let tag = entities.iter().filter(|e| e.dimension == 1).count() as i32 + 1;
-        entities.push(Entity { dimension: 1, tag, sets: part.sets, parts: vec![(Some(Kind::Line), part.elements)], nodes: vec![] });
+        entities.push(GeometryEntity { dimension: 1, tag, sets: part.sets, parts: vec![(Some(Kind::Line), part.elements)], nodes: vec![] });
     }
     let mut surfaces: Vec<Part> = parts(mesh, Kind::Triangle);
     surfaces.extend(parts(mesh, Kind::Quad));
@@ -76,7 +76,7 @@ fn entities(mesh: &Mesh) -> Vec<Entity> {
         let place = *places.entry((part.face, part.sets.clone())).or_insert(next);
         if place == next {
             let tag = places.len() as i32;
-            entities.push(Entity { dimension: 2, tag, sets: part.sets, parts: vec![], nodes: vec![] });
+            entities.push(GeometryEntity { dimension: 2, tag, sets: part.sets, parts: vec![], nodes: vec![] });
         }
         entities[place].parts.push((Some(part.kind), part.elements));
     }
@@ -85,7 +85,7 @@ fn entities(mesh: &Mesh) -> Vec<Entity> {
 }
 
 /// Entities of dimension 0: points of the mesh, and nodes of a set that none of its elements holds.
-fn points(mesh: &Mesh) -> Vec<Entity> {
+fn points(mesh: &Mesh) -> Vec<GeometryEntity> {
     let mut sets_of: BTreeMap<u32, Vec<usize>> = mesh.points.iter().map(|node| (*node, Vec::new())).collect();
     let mut held = vec![u32::MAX; mesh.nodes.len()];
     for (s, group) in mesh.groups.iter().enumerate() {
@@ -99,13 +99,13 @@ fn points(mesh: &Mesh) -> Vec<Entity> {
             sets_of.entry(*node).or_default().push(s);
         }
     }
-    let mut by_sets: Vec<Entity> = Vec::new();
+    let mut by_sets: Vec<GeometryEntity> = Vec::new();
     let mut places: BTreeMap<Vec<usize>, usize> = BTreeMap::new();
     for (node, sets) in sets_of {
         let next = by_sets.len();
         let place = *places.entry(sets.clone()).or_insert(next);
         if place == next {
-            by_sets.push(Entity { dimension: 0, tag: next as i32 + 1, sets, parts: vec![(None, vec![])], nodes: vec![] });
+            by_sets.push(GeometryEntity { dimension: 0, tag: next as i32 + 1, sets, parts: vec![(None, vec![])], nodes: vec![] });
         }
         by_sets[place].parts[0].1.push(node);
     }
@@ -113,7 +113,7 @@ fn points(mesh: &Mesh) -> Vec<Entity> {
 }
 
 /// Gives each node to the first entity that uses it, lower dimensions first; nodes without elements get one of their own.
-fn own_nodes(mesh: &Mesh, entities: &mut Vec<Entity>) {
+fn own_nodes(mesh: &Mesh, entities: &mut Vec<GeometryEntity>) {
     let mut owner = vec![u32::MAX; mesh.nodes.len()];
     for (e, entity) in entities.iter().enumerate() {
         let mut take = |node: u32| {
@@ -136,7 +136,7 @@ fn own_nodes(mesh: &Mesh, entities: &mut Vec<Entity>) {
     let unused: Vec<u32> = (0..mesh.nodes.len() as u32).filter(|node| owner[*node as usize] == u32::MAX).collect();
     if !unused.is_empty() {
         let tag = entities.iter().filter(|e| e.dimension == 0).count();
-        entities.insert(tag, Entity { dimension: 0, tag: tag as i32 + 1, sets: vec![], parts: vec![], nodes: unused });
+        entities.insert(tag, GeometryEntity { dimension: 0, tag: tag as i32 + 1, sets: vec![], parts: vec![], nodes: unused });
     }
 }
 
@@ -188,7 +188,7 @@ impl Sink<'_> {
     }
 }
 
-fn physical_names(sink: &mut Sink, sets: &[Set], entities: &[Entity]) -> io::Result<()> {
+fn physical_names(sink: &mut Sink, sets: &[Set], entities: &[GeometryEntity]) -> io::Result<()> {
     let mut groups: Vec<(usize, usize)> = entities.iter().flat_map(|e| e.sets.iter().map(|s| (e.dimension, *s))).collect();
     groups.sort_unstable();
     groups.dedup();
@@ -202,7 +202,7 @@ fn physical_names(sink: &mut Sink, sets: &[Set], entities: &[Entity]) -> io::Res
     writeln!(sink.out, "$EndPhysicalNames")
 }
 
-fn write_entities(sink: &mut Sink, deck: &Deck, entities: &[Entity]) -> io::Result<()> {
+fn write_entities(sink: &mut Sink, deck: &Deck, entities: &[GeometryEntity]) -> io::Result<()> {
     writeln!(sink.out, "$Entities")?;
     sink.sizes([0, 1, 2, 3].map(|d| entities.iter().filter(|e| e.dimension == d).count()))?;
     sink.end_line()?;
@@ -231,9 +231,9 @@ fn write_entities(sink: &mut Sink, deck: &Deck, entities: &[Entity]) -> io::Resu
     sink.end("Entities")
 }
 
-fn write_nodes(sink: &mut Sink, deck: &Deck, entities: &[Entity]) -> io::Result<()> {
+fn write_nodes(sink: &mut Sink, deck: &Deck, entities: &[GeometryEntity]) -> io::Result<()> {
     let total = deck.mesh.nodes.len();
-    let blocks: Vec<&Entity> = entities.iter().filter(|entity| !entity.nodes.is_empty()).collect();
+    let blocks: Vec<&GeometryEntity> = entities.iter().filter(|entity| !entity.nodes.is_empty()).collect();
     writeln!(sink.out, "$Nodes")?;
     sink.sizes([blocks.len(), total, total.min(1), total])?;
     sink.end_line()?;
@@ -283,7 +283,7 @@ fn element_type(kind: Option<Kind>, order: u8) -> i32 {
     }
 }
 
-fn write_elements(sink: &mut Sink, mesh: &Mesh, entities: &[Entity]) -> io::Result<()> {
+fn write_elements(sink: &mut Sink, mesh: &Mesh, entities: &[GeometryEntity]) -> io::Result<()> {
     let meshed = mesh.lines.len() + mesh.triangles.len() + mesh.quads.len();
     let single: usize = entities.iter().flat_map(|e| &e.parts).filter(|(kind, _)| kind.is_none()).map(|(_, nodes)| nodes.len()).sum();
     let total = meshed + single;

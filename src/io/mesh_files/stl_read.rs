@@ -14,7 +14,7 @@ use crate::mesh::{FaceRange, Mesh};
 const HEADER: usize = 84;
 const RECORD: usize = 50;
 
-/// Reads an STL: one surface per `solid`; triangles whose corners are not three are skipped and told (W810).
+/// Reads an STL: one surface per `solid`; triangles whose corners are not three are skipped and reported (W810).
 ///
 /// A file is binary when its size is what its count of triangles says, whatever its first word.
 pub fn read(bytes: &[u8], name: &str) -> Result<(Mesh, Vec<Malformed>), Malformed> {

@@ -13,7 +13,7 @@ use crate::io::step::reader::{NESTED, Step};
 
 /// What groups of faces are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sort {
+pub enum BundleKind {
     /// A solid, with its shells behind it.
     Solid,
     /// A shell of a solid.
@@ -28,7 +28,7 @@ pub enum Sort {
 #[derive(Clone, Debug)]
 pub struct Bundle {
     /// What it is.
-    pub sort: Sort,
+    pub sort: BundleKind,
     /// Its entity.
     pub entity: u32,
     /// First and last point, curve and face, the latter not included.
@@ -53,7 +53,7 @@ impl Item {
         [self.points.len(), self.curves.len(), self.faces.len()]
     }
 
-    fn bundle(&mut self, sort: Sort, entity: u32, from: [usize; 3]) {
+    fn bundle(&mut self, sort: BundleKind, entity: u32, from: [usize; 3]) {
         let to = self.now();
         self.bundles.push(Bundle { sort, entity, ranges: std::array::from_fn(|k| (from[k], to[k])) });
     }
@@ -115,12 +115,12 @@ impl<'f> Step<'f> {
             _ if file.under(k, b"MANIFOLD_SOLID_BREP").is_some() => self.solid(k, item),
             b"SHELL_BASED_SURFACE_MODEL" | b"FACE_BASED_SURFACE_MODEL" => {
                 for shell in self.members(k, row.list(1)?) {
-                    self.shell(shell, item, Sort::Shell);
+                    self.shell(shell, item, BundleKind::Shell);
                 }
                 Ok(())
             }
             b"OPEN_SHELL" | b"CLOSED_SHELL" | b"CONNECTED_FACE_SET" | b"ORIENTED_CLOSED_SHELL" | b"ORIENTED_OPEN_SHELL" => {
-                self.shell(k, item, Sort::Shell);
+                self.shell(k, item, BundleKind::Shell);
                 Ok(())
             }
             b"GEOMETRIC_SET" | b"GEOMETRIC_CURVE_SET" => {
@@ -129,7 +129,7 @@ impl<'f> Step<'f> {
                         self.left_out(member, why);
                     }
                 }
-                item.bundle(Sort::Set, k, from);
+                item.bundle(BundleKind::Set, k, from);
                 Ok(())
             }
             b"EDGE_BASED_WIREFRAME_MODEL" | b"SHELL_BASED_WIREFRAME_MODEL" => {
@@ -138,7 +138,7 @@ impl<'f> Step<'f> {
                         self.member(edge, item, unread, depth + 1)?;
                     }
                 }
-                item.bundle(Sort::Set, k, from);
+                item.bundle(BundleKind::Set, k, from);
                 Ok(())
             }
             name if SILENT.contains(&name) => Ok(()),
@@ -202,9 +202,9 @@ impl<'f> Step<'f> {
             (row.entity(1)?, if file.name(k) == b"BREP_WITH_VOIDS" { row.entities(2)? } else { Vec::new() })
         };
         for shell in std::iter::once(outer).chain(voids) {
-            self.shell(shell, item, Sort::Skin);
+            self.shell(shell, item, BundleKind::Skin);
         }
-        item.bundle(Sort::Solid, k, from);
+        item.bundle(BundleKind::Solid, k, from);
         // The solid stands before its shells.
         item.bundles[place..].rotate_right(1);
         Ok(())
@@ -222,7 +222,7 @@ impl<'f> Step<'f> {
         members
     }
 
-    fn shell(&mut self, k: u32, item: &mut Item, sort: Sort) {
+    fn shell(&mut self, k: u32, item: &mut Item, sort: BundleKind) {
         let from = item.now();
         match self.faces_of(k) {
             Ok((shell, faces, turned)) => {

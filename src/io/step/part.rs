@@ -11,7 +11,7 @@ use crate::io::cad::defect::Defect;
 use crate::io::cad::part::{Figure, Group, Item, Names, Part, Place, Shades, Stated};
 use crate::io::files::fault::Malformed;
 use crate::io::step::assembly::{Assembly, Instance, Placed};
-use crate::io::step::items::{Bundle, Item as Shape, Sort, Unread};
+use crate::io::step::items::{Bundle, BundleKind, Item as Shape, Unread};
 use crate::io::step::open::Opened;
 use crate::io::step::reader::Step;
 use crate::io::step::records::File;
@@ -170,7 +170,7 @@ impl PartBuilder<'_> {
         let members = [&group.points, &group.curves, &group.surfaces];
         let members: Vec<Place> = all.iter().zip(members).flat_map(|(kind, list)| list.iter().map(|k| kind(*k))).collect();
         self.made.entry(bundle.entity).or_default().extend(members);
-        if bundle.sort == Sort::Skin {
+        if bundle.sort == BundleKind::Skin {
             group.name = own.clone().unwrap_or_else(|| solid.clone());
             group.own = own;
             self.part.shells.push(group);
@@ -181,8 +181,8 @@ impl PartBuilder<'_> {
         let copied = alone && instance.parent.is_some() && given(instance.name.clone()).is_some();
         let wanted = if named_by_part || copied { Some(instance.name.clone()) } else { own };
         let word = match bundle.sort {
-            Sort::Solid => "solid",
-            Sort::Set => "set",
+            BundleKind::Solid => "solid",
+            BundleKind::Set => "set",
             _ => "shell",
         };
         let before = self.part.groups.len();
@@ -194,8 +194,8 @@ impl PartBuilder<'_> {
             self.single[place] = Some(before);
         }
         match bundle.sort {
-            Sort::Solid => self.part.solids.push(group.clone()),
-            Sort::Shell => self.part.shells.push(group.clone()),
+            BundleKind::Solid => self.part.solids.push(group.clone()),
+            BundleKind::Shell => self.part.shells.push(group.clone()),
             _ => {}
         }
         self.part.groups.push(group);

@@ -30,7 +30,7 @@ impl Step<'_> {
         self.clear_of_axis(k, Base::Turned { axis: *axis, profile, angles: (0.0, TURN), first: None }, loops)
     }
 
-    /// The surface #`k`, of a profile that crosses its axis the part that is meant; a guess is told.
+    /// The surface #`k`, of a profile that crosses its axis the part that is meant; a guess is reported.
     pub fn clear_of_axis(&mut self, k: u32, base: Base, loops: &FaceLoops) -> Result<Base, Defect> {
         let Clear { base, also, doubt } = base.clear_of_axis(loops, self.slack(), &self.tolerance)?;
         if let Some(doubt) = doubt {
@@ -50,7 +50,7 @@ impl Step<'_> {
         Ok(face)
     }
 
-    /// The stretch of a line that is turned: a little longer than what lies on it. One that meets the axis makes two cones; the one beside
+    /// The part of a line that is turned: a little longer than what lies on it. One that meets the axis makes two cones; the one beside
     /// the box is meant, up to its apex where the loops run round it.
     fn turned_line(&self, (p, d): (DVec3, DVec3), axis: &Axis, loops: &FaceLoops) -> Result<Curve, Defect> {
         let d = math::unit(d, 0.0).ok_or_else(|| defect("its line has no direction"))?;
@@ -77,7 +77,7 @@ impl Step<'_> {
         Ok(build::line(p + d * a, p + d * b, self.origin)?)
     }
 
-    /// The stretch of a conic without ends that is turned: a little longer than what lies on it.
+    /// The part of a conic without ends that is turned: a little longer than what lies on it.
     fn turned_conic(&self, conic: &Endless, axis: &Axis, loops: &FaceLoops) -> Result<Curve, Defect> {
         if loops.reach.is_empty() {
             return Err(defect("its conic has no ends"));

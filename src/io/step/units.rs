@@ -32,16 +32,16 @@ impl Units {
     }
 }
 
-/// The units of a context; what is wrong with one of them is told by `warn` with its record.
+/// The units of a context; what is wrong with one of them is reported by `warn` with its record.
 pub fn of_context(file: &File, context: u32, warn: &mut dyn FnMut(u32, String)) -> Units {
     let mut units = Units::NONE;
     if let Some(list) = file.under(context, b"GLOBAL_UNIT_ASSIGNED_CONTEXT") {
         let lists = list.values().filter_map(|v| v.list());
         for unit in lists.flat_map(Row::values).filter_map(|v| v.entity().ok()) {
             match size(file, unit, 0) {
-                Ok((Kind::Length, mm)) => units.millimetres = Some(mm),
-                Ok((Kind::Angle, radians)) => units.radians = radians,
-                Ok((Kind::Other, _)) => {}
+                Ok((UnitKind::Length, mm)) => units.millimetres = Some(mm),
+                Ok((UnitKind::Angle, radians)) => units.radians = radians,
+                Ok((UnitKind::Other, _)) => {}
                 Err(Defect(why)) => warn(unit, format!("the unit cannot be read: {why}")),
             }
         }
@@ -50,7 +50,7 @@ pub fn of_context(file: &File, context: u32, warn: &mut dyn FnMut(u32, String)) 
     for measure in lists.flat_map(Row::values).filter_map(|v| v.entity().ok()) {
         let row = file.under(measure, b"MEASURE_WITH_UNIT").unwrap_or_else(|| file.parameters(measure));
         let unit = row.entity(1).and_then(|unit| size(file, unit, 0));
-        if let (Ok(x), Ok((Kind::Length, mm))) = (row.number(0), unit)
+        if let (Ok(x), Ok((UnitKind::Length, mm))) = (row.number(0), unit)
             && x > 0.0
         {
             units.uncertainty = x * mm;
@@ -61,22 +61,22 @@ pub fn of_context(file: &File, context: u32, warn: &mut dyn FnMut(u32, String)) 
 
 /// Millimetres in a unit of length; none for another unit.
 pub fn unit_of_length(file: &File, unit: u32) -> Option<f64> {
-    size(file, unit, 0).ok().filter(|(kind, _)| *kind == Kind::Length).map(|(_, mm)| mm)
+    size(file, unit, 0).ok().filter(|(kind, _)| *kind == UnitKind::Length).map(|(_, mm)| mm)
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Kind {
+enum UnitKind {
     Length,
     Angle,
     Other,
 }
 
 /// What a unit measures, in millimetres or radians.
-fn size(file: &File, unit: u32, depth: usize) -> Result<(Kind, f64), Defect> {
+fn size(file: &File, unit: u32, depth: usize) -> Result<(UnitKind, f64), Defect> {
     if depth > NESTED {
         return Err(defect("units are defined by each other"));
     }
-    let checked = |kind: Kind, x: f64| {
+    let checked = |kind: UnitKind, x: f64| {
         if x > 0.0 && x.is_finite() { Ok((kind, x)) } else { Err(defect(format!("its size is {x}"))) }
     };
     if let Some(row) = file.under(unit, b"SI_UNIT") {
@@ -84,9 +84,9 @@ fn size(file: &File, unit: u32, depth: usize) -> Result<(Kind, f64), Defect> {
         let from = usize::from(row.values().count() > 2);
         let prefix = row.get(from).and_then(|v| v.word()).map_or(Ok(1.0), prefix)?;
         return match row.get(from + 1).and_then(|v| v.word()) {
-            Some(b"METRE") => checked(Kind::Length, 1000.0 * prefix),
-            Some(b"RADIAN") => checked(Kind::Angle, prefix),
-            _ => Ok((Kind::Other, 1.0)),
+            Some(b"METRE") => checked(UnitKind::Length, 1000.0 * prefix),
+            Some(b"RADIAN") => checked(UnitKind::Angle, prefix),
+            _ => Ok((UnitKind::Other, 1.0)),
         };
     }
     let converted = [&b"CONVERSION_BASED_UNIT"[..], b"CONVERSION_BASED_UNIT_WITH_OFFSET"].into_iter().find_map(|n| file.under(unit, n));
@@ -97,7 +97,7 @@ fn size(file: &File, unit: u32, depth: usize) -> Result<(Kind, f64), Defect> {
         let (kind, one) = size(file, of.entity(1)?, depth + 1)?;
         return checked(kind, of.number(0)? * one);
     }
-    Ok((Kind::Other, 1.0))
+    Ok((UnitKind::Other, 1.0))
 }
 
 fn prefix(word: &[u8]) -> Result<f64, Defect> {

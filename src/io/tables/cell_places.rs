@@ -6,7 +6,7 @@ use crate::io::tables::text::{decode, separator, without_comments};
 
 /// The text of a csv with the places of its cells.
 #[derive(Clone, Debug)]
-pub struct Places<'a> {
+pub struct CellPlaces<'a> {
     /// The text, without a byte order mark; empty where the file is no text.
     pub text: &'a str,
     separator: char,
@@ -14,7 +14,7 @@ pub struct Places<'a> {
     lines: Vec<usize>,
 }
 
-impl<'a> Places<'a> {
+impl<'a> CellPlaces<'a> {
     /// Those of a file that was read as a csv.
     pub fn new(bytes: &'a [u8]) -> Self {
         let text = decode(bytes).unwrap_or("");
@@ -64,7 +64,7 @@ mod tests {
     #[test]
     fn cells_are_found() {
         let text = "# sizes\n\nname ; width [mm];n\n\"a;b\"; 80 ;4 # high\nlast;;7";
-        let places = Places::new(text.as_bytes());
+        let places = CellPlaces::new(text.as_bytes());
         let cell = |line, column| &text[places.cell(line, column)];
         assert_eq!(places.first_line(), 3);
         assert_eq!([cell(3, 0), cell(3, 1), cell(3, 2)], ["name", "width [mm]", "n"]);

@@ -34,7 +34,7 @@ pub fn read(bytes: &[u8]) -> Result<Json, Malformed> {
     let text = decode(bytes)?;
     let values = Cell::new(0);
     let mut deserializer = serde_json::Deserializer::from_str(text);
-    let json = Tree(&values).deserialize(&mut deserializer).and_then(|json| deserializer.end().map(|()| json));
+    let json = JsonReader(&values).deserialize(&mut deserializer).and_then(|json| deserializer.end().map(|()| json));
     json.map_err(|e| {
         let message = e.to_string();
         let what = message.rsplit_once(" at line ").map_or(message.as_str(), |(what, _)| what);
@@ -44,9 +44,9 @@ pub fn read(bytes: &[u8]) -> Result<Json, Malformed> {
 
 /// Makes a [`Json`] and counts the values of the whole file.
 #[derive(Clone, Copy)]
-struct Tree<'a>(&'a Cell<usize>);
+struct JsonReader<'a>(&'a Cell<usize>);
 
-impl<'de> DeserializeSeed<'de> for Tree<'_> {
+impl<'de> DeserializeSeed<'de> for JsonReader<'_> {
     type Value = Json;
 
     fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Json, D::Error> {
@@ -58,7 +58,7 @@ impl<'de> DeserializeSeed<'de> for Tree<'_> {
     }
 }
 
-impl<'de> Visitor<'de> for Tree<'_> {
+impl<'de> Visitor<'de> for JsonReader<'_> {
     type Value = Json;
 
     fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {

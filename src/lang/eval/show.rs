@@ -63,7 +63,7 @@ impl Cx<'_> {
                 MeshValue::Data(mesh, _) => mesh.name.clone(),
             },
             Value::Link(_, id) => format!("link {}", id.0 + 1),
-            Value::Edge(_, edge) => format!("edge {}", edge.told.0 + 1),
+            Value::Edge(_, edge) => format!("edge {}", edge.named_by.0 + 1),
             Value::Vertex(_, id) => format!("vertex {}", id.0 + 1),
             Value::Patch(_, id) => format!("patch {}", id.0 + 1),
             Value::Plane(_) => "plane".into(),

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 /// How a script and its golden stand to each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum State {
+pub enum TestState {
     /// Both are there.
     Both,
     /// The script was named and has no golden yet.
@@ -26,16 +26,16 @@ pub struct Test {
     /// Its golden.
     pub golden: PathBuf,
     /// Which of them exist.
-    pub state: State,
+    pub state: TestState,
 }
 
 impl Test {
     fn of(script: PathBuf) -> Self {
         let golden = script.with_extension("golden");
         let state = match (script.is_file(), golden.is_file()) {
-            (true, false) => State::NoGolden,
-            (false, true) => State::NoScript,
-            _ => State::Both,
+            (true, false) => TestState::NoGolden,
+            (false, true) => TestState::NoScript,
+            _ => TestState::Both,
         };
         Self { name: script.to_string_lossy().replace('\\', "/"), script, golden, state }
     }

@@ -38,7 +38,7 @@ pub struct Compare {
 
 /// `case "long": span = 50m, n = 4`.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Case {
+pub struct CaseLine {
     /// Name of its section.
     pub name: String,
     /// Params and the texts of their literals.
@@ -83,7 +83,7 @@ pub struct Head {
     /// Files to compare.
     pub compares: Vec<Compare>,
     /// Runs; none: the model as written.
-    pub cases: Vec<Case>,
+    pub cases: Vec<CaseLine>,
 }
 
 /// A line of a body with the comments that belong to it.

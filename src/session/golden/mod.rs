@@ -34,7 +34,7 @@ mod words;
 
 pub use describe::DiffLine;
 pub use diff::{Difference, NoDiff, diff};
-pub use discover::{State, Test, discover};
+pub use discover::{Test, TestState, discover};
 pub use file::{Flaw, Golden, Producer};
 pub use junit::text as junit_text;
 pub use run::{Settings, name_of, names, run_all, run_one, run_one_again};

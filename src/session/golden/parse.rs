@@ -1,6 +1,6 @@
 //! Reads a golden file, with a place for everything that is wrong.
 
-use super::file::{Case, Compare, Entry, Flaw, Golden, Head, Producer, Section, VERSION};
+use super::file::{CaseLine, Compare, Entry, Flaw, Golden, Head, Producer, Section, VERSION};
 use super::line::parse_line;
 use super::quotes::{end_of_quote, unquoted};
 use super::words::{is_code, kind_of};
@@ -238,7 +238,7 @@ fn compare(rest: &str) -> Result<Compare, String> {
     Ok(Compare { file, within, unit })
 }
 
-fn case(rest: &str) -> Result<Case, String> {
+fn case(rest: &str) -> Result<CaseLine, String> {
     let wanted = || "expected `case \"long\": span = 50m, n = 4`".to_owned();
     let end = end_of_quote(rest).filter(|_| rest.starts_with('"')).ok_or_else(wanted)?;
     let name = unquoted(&rest[..end]).map_err(|_| wanted())?;
@@ -263,7 +263,7 @@ fn case(rest: &str) -> Result<Case, String> {
         }
         sets.push((param, value));
     }
-    Ok(Case { name, sets })
+    Ok(CaseLine { name, sets })
 }
 
 /// Parts between commas, those inside brackets and quotes aside.

@@ -6,7 +6,7 @@ use std::sync::mpsc::channel;
 use std::thread;
 
 use super::describe::{self, DiffLine};
-use super::discover::{State, Test};
+use super::discover::{Test, TestState};
 use super::file::{Flaw, Golden, Head};
 use super::model_test::ModelTest;
 use super::scratch::Scratch;
@@ -93,13 +93,13 @@ pub fn run_one_again(test: &Test, settings: &Settings, kept: &mut Kept) -> Vec<C
     let alone = |result: CaseResult| if wanted(&result.name) { vec![result] } else { Vec::new() };
     let golden_name = test.golden.to_string_lossy().replace('\\', "/");
     match test.state {
-        State::NoScript => {
+        TestState::NoScript => {
             let message = format!("{golden_name} has no script: there is no {}", test.name);
             return alone(
                 CaseResult::new(&test.name, Verdict::Orphaned, message).help(format!("remove {golden_name}, or bring the script back")),
             );
         }
-        State::NoGolden if !settings.accept => {
+        TestState::NoGolden if !settings.accept => {
             let message = format!("{} has no golden", test.name);
             return alone(CaseResult::new(&test.name, Verdict::Missing, message).help(format!("loft test --accept {}", test.name)));
         }
@@ -116,7 +116,7 @@ pub fn run_one_again(test: &Test, settings: &Settings, kept: &mut Kept) -> Vec<C
         }
     };
     let read = match test.state {
-        State::NoGolden => Ok((Golden { head: Head::fresh(), sections: Vec::new() }, Vec::new())),
+        TestState::NoGolden => Ok((Golden { head: Head::fresh(), sections: Vec::new() }, Vec::new())),
         _ => match read_limited(&test.golden, limits::SOURCE_BYTES) {
             Ok(bytes) => Golden::parse(&bytes),
             Err(error) => Err(vec![Flaw { line: 0, what: why_unreadable(&error) }]),

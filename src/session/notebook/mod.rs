@@ -221,12 +221,12 @@ impl Notebook {
         Ok(outcome)
     }
 
-    /// Goes over to another state, tells about `named` and about what the change broke or repaired.
+    /// Goes over to another state; the answer describes `named` and what the change broke or repaired.
     fn change(&mut self, next: State, named: &[String]) -> Answer {
         self.change_and_look(next, named, &[])
     }
 
-    /// The same, and tells what became of the checks and reports among `entered`, texts of declarations.
+    /// The same, with what became of the checks and reports among `entered`, texts of declarations.
     fn change_and_look(&mut self, next: State, named: &[String], entered: &[&str]) -> Answer {
         let mut lines: Vec<String> = Vec::new();
         let mut results: Vec<Part> = Vec::new();

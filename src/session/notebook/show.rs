@@ -1,4 +1,4 @@
-//! What a session tells about names: values, dependencies, meshes, and whether they may be removed.
+//! What a session shows of names: values, dependencies, meshes, and whether they may be removed.
 
 use super::edit::shown_table;
 use super::{Answer, Notebook, Part, ended};

@@ -20,7 +20,7 @@ fn text(text: impl Into<String>) -> Cell {
     Cell::Text(text.into())
 }
 
-/// A place as far as the tolerance tells it.
+/// A place as far as the tolerance resolves it.
 fn place(p: DVec3, tolerance: &Tolerance) -> Cell {
     Cell::List(tolerance.rounded(p).to_array().map(Cell::Number).to_vec())
 }

@@ -32,7 +32,7 @@ struct Lists {
 }
 
 /// One use of an edge in a loop, or of a vertex at which the surface is a point.
-struct Step {
+struct LoopStep {
     is_vertex: bool,
     /// Pointer to the list, and place in it.
     of: (u32, u32),
@@ -174,15 +174,15 @@ impl FileBuilder<'_> {
 }
 
 /// The edges of a loop in their order, and between two of them the vertex at which the surface is a point.
-fn steps(bodies: &Bodies, ends: &Ends, around: &BodyLoop, lists: &Lists, tolerance: &Tolerance) -> Vec<Step> {
-    let mut steps: Vec<Step> = Vec::new();
+fn steps(bodies: &Bodies, ends: &Ends, around: &BodyLoop, lists: &Lists, tolerance: &Tolerance) -> Vec<LoopStep> {
+    let mut steps: Vec<LoopStep> = Vec::new();
     for (edge, against) in around {
         let (first, last) = bodies.body.edges[*edge].ends;
         let end = if *against { first } else { last };
         let uv = bodies.curves[*edge].as_ref().and_then(|curve| along_border(curve, *against, &ends.borders, tolerance));
-        steps.push(Step { is_vertex: false, of: (lists.edges.0, lists.edges.1[edge]), forward: !against, uv });
+        steps.push(LoopStep { is_vertex: false, of: (lists.edges.0, lists.edges.1[edge]), forward: !against, uv });
         if ends.poles.iter().any(|pole| tolerance.same_point(*pole, bodies.vertices[end])) {
-            steps.push(Step { is_vertex: true, of: (lists.vertices.0, lists.vertices.1[&end]), forward: true, uv: None });
+            steps.push(LoopStep { is_vertex: true, of: (lists.vertices.0, lists.vertices.1[&end]), forward: true, uv: None });
         }
     }
     let n = steps.len();
@@ -218,7 +218,7 @@ fn along_border(curve: &Curve, against: bool, borders: &[NetBorder], tolerance: 
         |border| {
             let found: Vec<Closest> = places.iter().map(|p| closest(&border.curve, *p)).collect();
             let ascends = found[1].t < found[PLACES - 1].t;
-            // Where a closed border begins it ends too: which of them is meant the direction tells.
+            // Where a closed border begins it ends too: the direction decides which of them is meant.
             let (low, high) = border.curve.domain();
             let (start, end) = if ascends { (low, high) } else { (high, low) };
             let is_joint = |at: &Closest| tolerance.same_point(at.point, border.curve.start()) && border.curve.is_closed(tolerance);

@@ -148,7 +148,7 @@ impl Tree<'_> {
         self.tolerance.same_point(a.point(DVec3::ZERO), b.point(DVec3::ZERO)) && DVec3::AXES.into_iter().all(is_near)
     }
 
-    /// Whether a thing is another one moved, with the same looks.
+    /// Whether a thing is another one moved, on the same layers.
     fn is_copy(&self, a: &Thing, b: &Thing, by: &Motion) -> bool {
         let near = |p: DVec3, q: DVec3| self.tolerance.same_point(by.point(p), q);
         let same_shape = match (&a.shown, &b.shown) {
@@ -193,7 +193,7 @@ fn is_copy(a: &Faces, b: &Faces, near: &dyn Fn(DVec3, DVec3) -> bool) -> bool {
     a.solid == b.solid && one.len() == other.len() && one.iter().zip(other).all(same)
 }
 
-/// Places of a surface that tell where it is; of a plane, whose (u, v) may run otherwise in a copy, those of its border.
+/// Places of a surface that show where it is; of a plane, whose (u, v) may run otherwise in a copy, those of its border.
 fn compared(surface: &Surface) -> Vec<DVec3> {
     if !surface.is_flat() {
         return PROBES.iter().map(|(u, v)| surface.point(*u, *v)).collect();

@@ -9,7 +9,7 @@ use crate::base::job;
 use crate::geometry::Motion;
 use crate::io::cad::assembly::Node;
 use crate::io::cad::defect::Defect;
-use crate::io::step::write::product::{self, Product, Shape};
+use crate::io::step::write::product::{self, Product, ShapeRecords};
 use crate::io::step::write::records::{self, Id, Records};
 use crate::io::step::write::styles::{self, Painted};
 use crate::io::step::write::things::{Setup, Shown, Thing};
@@ -36,8 +36,8 @@ pub fn sheet(things: &[Thing], nodes: &[Node], name: &str, setup: &Setup) -> Res
     let application = product::application(&mut records, setup.schema);
     let tree = assembly::products(things, nodes, name, &setup.scale.tolerance);
     let uses = assembly::uses(&tree);
-    let mut content = Content::default();
-    let mut shapes: Vec<(Product, Shape)> = Vec::with_capacity(tree.len());
+    let mut content = FileContent::default();
+    let mut shapes: Vec<(Product, ShapeRecords)> = Vec::with_capacity(tree.len());
     let mut occurrences = 0;
     for (own, uses) in tree.iter().zip(uses) {
         let whole = product::product(&mut records, application, &own.name);
@@ -78,7 +78,7 @@ pub fn sheet(things: &[Thing], nodes: &[Node], name: &str, setup: &Setup) -> Res
 
 /// What of all products stands behind them in the file, or in words.
 #[derive(Default)]
-pub(crate) struct Content {
+pub(crate) struct FileContent {
     layers: Vec<(String, Vec<Id>)>,
     painted: Vec<Painted>,
     /// Which of these are of each product.
@@ -98,7 +98,7 @@ struct Items {
     wires: Vec<Id>,
 }
 
-impl Content {
+impl FileContent {
     /// The things of a product, which stands in the whole so many times.
     fn put(
         &mut self,

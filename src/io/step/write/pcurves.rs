@@ -29,7 +29,7 @@ const FINE: f64 = 0.1;
 
 /// Puts an edge in the parameters of a surface; `None` on a plane, along a constant parameter and where no curve stays near.
 pub fn put(records: &mut Records, surface: Id, found: &Elementary, edge: &Along, scale: &Scale) -> Option<Id> {
-    let frame = Frame::of(found)?;
+    let frame = ParameterFrame::of(found)?;
     let curve = frame.within(edge, scale)?;
     let point = |records: &mut Records, p: DVec3| {
         records.put("CARTESIAN_POINT", |v| {
@@ -56,7 +56,7 @@ pub fn put(records: &mut Records, surface: Id, found: &Elementary, edge: &Along,
 }
 
 /// A surface round an axis with its parameters: u is the angle from x, v the length along the axis, or an angle.
-struct Frame<'e> {
+struct ParameterFrame<'e> {
     form: &'e Form,
     at: DVec3,
     x: DVec3,
@@ -64,7 +64,7 @@ struct Frame<'e> {
     z: DVec3,
 }
 
-impl<'e> Frame<'e> {
+impl<'e> ParameterFrame<'e> {
     fn of(found: &'e Elementary) -> Option<Self> {
         let axis = match &found.form {
             Form::Plane { .. } => return None,

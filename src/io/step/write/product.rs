@@ -198,7 +198,7 @@ pub fn product(records: &mut Records, application: Id, name: &str) -> Product {
 
 /// The shape of a product as records.
 #[derive(Clone, Debug)]
-pub struct Shape {
+pub struct ShapeRecords {
     representation: Id,
     /// Its own frame.
     frame: Id,
@@ -208,7 +208,15 @@ pub struct Shape {
 
 /// The shape of a product: one representation of everything in it, so that readers find each thing under its name. `places`, in units
 /// of the file, are those of its parts.
-pub fn shape(records: &mut Records, product: Product, name: &str, context: Context, kind: &str, items: &[Id], places: &[Motion]) -> Shape {
+pub fn shape(
+    records: &mut Records,
+    product: Product,
+    name: &str,
+    context: Context,
+    kind: &str,
+    items: &[Id],
+    places: &[Motion],
+) -> ShapeRecords {
     let frame = records.frame(DVec3::ZERO, DVec3::Z, DVec3::X);
     let place = |to: &Motion| records.frame(to.point(DVec3::ZERO), to.vector(DVec3::Z), to.vector(DVec3::X));
     let places: Vec<Id> = places.iter().map(place).collect();
@@ -218,12 +226,19 @@ pub fn shape(records: &mut Records, product: Product, name: &str, context: Conte
     records.put("SHAPE_DEFINITION_REPRESENTATION", |v| {
         v.id(product.shape).id(representation);
     });
-    Shape { representation, frame, places }
+    ShapeRecords { representation, frame, places }
 }
 
 /// A product in another one, at one of the places of that; `number` tells it from all others of the file. Gives the definition of its
 /// shape there.
-pub fn occurrence(records: &mut Records, number: usize, name: &str, part: (Product, &Shape), whole: (Product, &Shape), place: usize) -> Id {
+pub fn occurrence(
+    records: &mut Records,
+    number: usize,
+    name: &str,
+    part: (Product, &ShapeRecords),
+    whole: (Product, &ShapeRecords),
+    place: usize,
+) -> Id {
     let used = records.put("NEXT_ASSEMBLY_USAGE_OCCURRENCE", |v| {
         v.text(&number.to_string()).text(name).text("").id(whole.0.definition).id(part.0.definition).word("$");
     });
@@ -249,7 +264,7 @@ pub fn occurrence(records: &mut Records, number: usize, name: &str, part: (Produ
 }
 
 /// What a style of a product at one of its places refers to.
-pub fn place(records: &mut Records, shape: Id, whole: &Shape, place: usize, context: Context) -> Id {
+pub fn place(records: &mut Records, shape: Id, whole: &ShapeRecords, place: usize, context: Context) -> Id {
     let representation = records.put("SHAPE_REPRESENTATION", |v| {
         v.text("").ids(&[whole.places[place]]).id(context.context);
     });

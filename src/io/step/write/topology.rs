@@ -163,7 +163,7 @@ impl Writer<'_> {
         Ok(edges)
     }
 
-    /// The curve of an edge with what it is in the parameters of its faces' surfaces, where readers need to be told.
+    /// The curve of an edge with what it is in the parameters of its faces' surfaces, where readers need it.
     fn on_surfaces(&self, records: &mut Records, faces: &[usize], own: Id, along: &Along) -> Id {
         let once = |face: &&usize| faces.iter().filter(|other| other == face).count() == 1;
         let mut within = Vec::new();

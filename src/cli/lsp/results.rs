@@ -1,4 +1,4 @@
-//! What the editor is told of an evaluated model: diagnostics, lenses, hovers and quick fixes.
+//! What the editor shows of an evaluated model: diagnostics, lenses, hovers and quick fixes.
 
 use serde_json::{Value, json};
 
@@ -122,7 +122,7 @@ pub fn hover(facts: &Facts, document: &Document, name: &str, line: &str, docs: &
     hover_text(line, &format!("{docs}\n\n{note}"))
 }
 
-/// Takes over what a run told into what was told before it.
+/// Puts the facts of a run over those of earlier runs.
 pub fn remember(facts: &mut Facts, before: Facts) {
     let mut seen = before.seen;
     if facts.knows_all() {
