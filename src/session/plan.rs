@@ -110,59 +110,9 @@ pub fn of(cx: &mut Cx, module: ModuleId, spec: &MeshSpec, sink: &mut Vec<Fault>)
         sink.push(MeshFault::RuleUnused { rule, why: "`flip` is for faces, and there is none here".to_owned() }.into());
     }
     plan.settings = spec.settings;
-    for rule in &spec.rules {
-        let first = plan.rules.len();
-        for (value, _) in &rule.things {
-            let mut targets = finder.targets(cx, value)?;
-            // Where the mesh has the pieces of a surface, a rule on it speaks of them.
-            let meshed = |s: &SurfaceId| plan.surfaces.iter().any(|own| own.0 == *s);
-            if targets.iter().any(|t| matches!(t, Target::Surface(s) if meshed(s))) {
-                targets.retain(|t| !matches!(t, Target::Surface(s) if !meshed(s)));
-            }
-            for target in targets {
-                plan.rules.push(Rule { target, settings: rule.settings, origin: rule.origin });
-            }
-        }
-        idle_settings(rule, &plan.rules[first..], sink);
-    }
-    for refine in &spec.refines {
-        let mut at: Vec<Place> = refine.boxes.iter().copied().map(Place::Box).collect();
-        for (value, _) in &refine.things {
-            match value {
-                Value::Edge(home, edge) => at.push(Place::Chain(chain_of(cx, home, edge)?)),
-                _ => {
-                    for target in finder.targets(cx, value)? {
-                        match target {
-                            Target::Chain(chain) => at.push(Place::Chain(chain)),
-                            Target::Point(p) => at.push(Place::Point(p)),
-                            Target::Edge(_) | Target::Surface(_) | Target::Patches(_) => {}
-                        }
-                    }
-                }
-            }
-        }
-        // That nothing was selected was said where it is written.
-        if at.is_empty() {
-            continue;
-        }
-        plan.refines.push(Refine { at, size: refine.size, radius: refine.radius, origin: refine.origin });
-    }
-    let shells = spec.things.iter().filter_map(|(value, _)| if let Value::Shell(shell) = value { Some((shell, value)) } else { None });
-    for (shell, value) in shells {
-        if !shell.name.is_empty() && !plan.groups.iter().any(|group| *group.name == *shell.name) {
-            plan.groups.push(GroupRequest { name: shell.name.to_string(), members: finder.targets(cx, value)?, origin: shell.origin });
-        }
-    }
-    for group in &cx.groups(module)? {
-        let mut members = Vec::new();
-        for value in &group.value {
-            // What the mesh does not hold is no part of its groups.
-            if surfaces_of(value).iter().all(|s| scene.find(s).is_some()) {
-                members.extend(finder.targets(cx, value)?);
-            }
-        }
-        plan.groups.push(GroupRequest { name: group.name.to_string(), members, origin: group.origin });
-    }
+    finder.rules(cx, spec, &mut plan, sink)?;
+    finder.refines(cx, spec, &mut plan)?;
+    finder.groups(cx, spec, &mut plan)?;
     let imprint = spec.settings.imprint.map_or(faces.imprint, |(asked, origin)| asked.then_some(origin));
     if let Some(origin) = imprint {
         if !plan.settings.conforming() {
@@ -179,6 +129,75 @@ pub fn of(cx: &mut Cx, module: ModuleId, spec: &MeshSpec, sink: &mut Vec<Fault>)
     }
     let scene = super::cuts::along_curves(scene, &mut plan, &tolerance, cx.job)?;
     Ok((plan, scene))
+}
+
+impl Finder<'_> {
+    /// Puts the rules of a mesh into its plan, one for each target.
+    fn rules(&self, cx: &mut Cx, spec: &MeshSpec, plan: &mut Plan, sink: &mut Vec<Fault>) -> Result<(), Halt> {
+        for rule in &spec.rules {
+            let first = plan.rules.len();
+            for (value, _) in &rule.things {
+                let mut targets = self.targets(cx, value)?;
+                // Where the mesh has the pieces of a surface, a rule on it speaks of them.
+                let meshed = |s: &SurfaceId| plan.surfaces.iter().any(|own| own.0 == *s);
+                if targets.iter().any(|t| matches!(t, Target::Surface(s) if meshed(s))) {
+                    targets.retain(|t| !matches!(t, Target::Surface(s) if !meshed(s)));
+                }
+                for target in targets {
+                    plan.rules.push(Rule { target, settings: rule.settings, origin: rule.origin });
+                }
+            }
+            idle_settings(rule, &plan.rules[first..], sink);
+        }
+        Ok(())
+    }
+
+    /// Puts the places where a mesh is finer into its plan.
+    fn refines(&self, cx: &mut Cx, spec: &MeshSpec, plan: &mut Plan) -> Result<(), Halt> {
+        for refine in &spec.refines {
+            let mut at: Vec<Place> = refine.boxes.iter().copied().map(Place::Box).collect();
+            for (value, _) in &refine.things {
+                match value {
+                    Value::Edge(home, edge) => at.push(Place::Chain(chain_of(cx, home, edge)?)),
+                    _ => {
+                        for target in self.targets(cx, value)? {
+                            match target {
+                                Target::Chain(chain) => at.push(Place::Chain(chain)),
+                                Target::Point(p) => at.push(Place::Point(p)),
+                                Target::Edge(_) | Target::Surface(_) | Target::Patches(_) => {}
+                            }
+                        }
+                    }
+                }
+            }
+            // That nothing was selected was said where it is written.
+            if !at.is_empty() {
+                plan.refines.push(Refine { at, size: refine.size, radius: refine.radius, origin: refine.origin });
+            }
+        }
+        Ok(())
+    }
+
+    /// Puts groups into the plan of a mesh: of each shell with a name, then the declared ones.
+    fn groups(&self, cx: &mut Cx, spec: &MeshSpec, plan: &mut Plan) -> Result<(), Halt> {
+        let shells = spec.things.iter().filter_map(|(value, _)| if let Value::Shell(shell) = value { Some((shell, value)) } else { None });
+        for (shell, value) in shells {
+            if !shell.name.is_empty() && !plan.groups.iter().any(|group| *group.name == *shell.name) {
+                plan.groups.push(GroupRequest { name: shell.name.to_string(), members: self.targets(cx, value)?, origin: shell.origin });
+            }
+        }
+        for group in &cx.groups(self.module)? {
+            let mut members = Vec::new();
+            for value in &group.value {
+                // What the mesh does not hold is no part of its groups.
+                if surfaces_of(value).iter().all(|s| self.scene.find(s).is_some()) {
+                    members.extend(self.targets(cx, value)?);
+                }
+            }
+            plan.groups.push(GroupRequest { name: group.name.to_string(), members, origin: group.origin });
+        }
+        Ok(())
+    }
 }
 
 /// W701 for settings that say nothing about what their rule speaks of: steps of a face, elements of a curve.
