@@ -6,12 +6,12 @@ use glam::DVec3;
 
 use crate::base::fault::{Fault, Say, ValueFault};
 use crate::base::job::Job;
-use crate::base::limits::{REPORTS_OF_A_KIND, REPORTS_TOLD, STAGE_WORK, WORK_OF_A_CURVE, WORK_OF_A_SURFACE};
+use crate::base::limits::{STAGE_WORK, WORK_OF_A_CURVE, WORK_OF_A_SURFACE};
 use crate::base::tolerance::Tolerance;
 use crate::base::work::{Budget, Exceeded};
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
-use crate::lang::eval::pipeline::{Parts, Pipeline, Snapping, Turn};
+use crate::lang::eval::pipeline::{Parts, Pipeline};
 use crate::lang::eval::scene::Scene;
 use crate::lang::values::plans::MeshSpec;
 use crate::lang::values::value::ModuleId;
@@ -21,8 +21,6 @@ use crate::mesh::cache::reuse::Shelf;
 use crate::mesh::size::remark::Remark;
 use crate::model::Model;
 use crate::model::topology::Named;
-use crate::network::fault::CurveEnd;
-use crate::network::snap::{Hold, SnapEnd, snap};
 use crate::network::{Chain, Network};
 use crate::surface::Surface;
 
@@ -114,42 +112,6 @@ impl Stages<'_> {
 }
 
 impl Pipeline for Stages<'_> {
-    fn snap(&self, cx: &mut Cx, snapping: &mut Snapping) -> Result<(), Halt> {
-        let tolerance = cx.tolerance()?;
-        let (mut ends, mut owners) = (Vec::new(), Vec::new());
-        for (k, (declared, turn)) in snapping.curves.iter().enumerate() {
-            let Some(curve) = declared.value.whole_curve().filter(|c| !c.is_closed(&tolerance)) else { continue };
-            let hold = match turn {
-                _ if !curve.has_movable_ends(&tolerance) => Hold::Fixed,
-                Turn::Before { named: true } => Hold::Settled,
-                Turn::Before { named: false } | Turn::Now => Hold::Free,
-            };
-            let length = declared.value.length();
-            for (last, at) in [(false, curve.start()), (true, curve.end())] {
-                ends.push(SnapEnd { end: CurveEnd { of: declared.origin, last, at }, hold, length });
-                owners.push(k);
-            }
-        }
-        let mut sink = Vec::new();
-        let moves = snap(&ends, &snapping.points, (snapping.distance, snapping.origin), &tolerance, &mut sink)?;
-        say_all(cx, &sink);
-        let mut places: Vec<DVec3> = ends.iter().map(|e| e.end.at).collect();
-        let mut moved = vec![false; owners.len()];
-        for m in &moves {
-            places[m.end] = m.to;
-            moved[m.end] = true;
-        }
-        for pair in (0..ends.len()).step_by(2) {
-            if moved[pair] || moved[pair + 1] {
-                let declared = &mut snapping.curves[owners[pair]].0;
-                if let Some(curve) = declared.value.whole_curve() {
-                    declared.value = Chain::of_curve(&curve.with_ends(places[pair], places[pair + 1])?);
-                }
-            }
-        }
-        Ok(())
-    }
-
     fn network(&self, cx: &mut Cx, module: ModuleId, parts: &Parts) -> Result<Arc<Network>, Halt> {
         let tolerance = cx.tolerance()?;
         let curves: Vec<(String, &Chain)> = parts.curves.iter().map(|c| (c.name.to_string(), &c.value)).collect();
@@ -161,7 +123,7 @@ impl Pipeline for Stages<'_> {
             && let Some(before) = kept.networks.get(&module).filter(|before| before.fits(&inputs, &points, &tolerance))
         {
             self.count_reused();
-            say_all(cx, &before.said);
+            cx.say_all(&before.said);
             return Ok(before.network.clone());
         }
         let _phase = cx.job.phase("network");
@@ -174,14 +136,14 @@ impl Pipeline for Stages<'_> {
         let (parts, job) = (inputs.len(), cx.job);
         let made = || Network::build_after(before.as_deref(), inputs, (&points, &tolerance), job, &mut said);
         let network = Arc::new(within_work("the network", WORK_OF_A_CURVE.saturating_mul(parts as u64), made)?);
-        say_all(cx, &said);
+        cx.say_all(&said);
         if let (Some(mut kept), Some(inputs)) = (self.kept(), again) {
             kept.networks.insert(module, KeptNetwork { inputs, points, tolerance, network: network.clone(), said });
         }
         Ok(network)
     }
 
-    fn model(&self, cx: &mut Cx, module: ModuleId, (parts, network): (&Parts, Arc<Network>)) -> Result<Arc<Model>, Halt> {
+    fn model(&self, cx: &mut Cx, module: ModuleId, parts: &Parts, network: Arc<Network>) -> Result<Arc<Model>, Halt> {
         let tolerance = cx.tolerance()?;
         let named = |s: &crate::lang::eval::pipeline::Declared<crate::surface::Surface>| Named {
             name: s.name.to_string(),
@@ -215,9 +177,9 @@ impl Pipeline for Stages<'_> {
         let made = self.made(&input, (module, spec.name.clone()), cx.job);
         self.found().mesh_seconds += (self.clock)() - start;
         // What the plan has to say comes first, also when the mesh fails.
-        let made = made.inspect_err(|_| say_all(cx, &sink))?;
+        let made = made.inspect_err(|_| cx.say_all(&sink))?;
         sink.extend(made.remarks.iter().map(|remark| remark.fault(&input)));
-        say_all(cx, &sink);
+        cx.say_all(&sink);
         self.note(made.lines.iter().map(|line| format!("mesh {}: {line}", spec.name)));
         Ok(made.mesh)
     }
@@ -260,32 +222,5 @@ impl Stages<'_> {
         let mut kept = kept();
         kept.reuse = reuse;
         Ok(of(kept.keep_mesh(key, built?, &surfaces)))
-    }
-}
-
-/// Says notes and warnings; of a kind that comes in thousands the first [`REPORTS_OF_A_KIND`] in words, the rest as a count.
-fn say_all(cx: &mut Cx, sink: &[Fault]) {
-    let mut kinds: Vec<(&Fault, usize)> = Vec::new();
-    let kind_of: Vec<usize> = sink
-        .iter()
-        .map(|fault| {
-            let kind = kinds.iter().position(|(first, _)| first.same_kind(fault)).unwrap_or(kinds.len());
-            if kind == kinds.len() {
-                kinds.push((fault, 0));
-            }
-            kinds[kind].1 += 1;
-            kind
-        })
-        .collect();
-    let mut said = vec![0; kinds.len()];
-    let most = if cx.sink.whole { REPORTS_TOLD } else { REPORTS_OF_A_KIND };
-    for (fault, kind) in sink.iter().zip(kind_of) {
-        said[kind] += 1;
-        let rest = kinds[kind].1.saturating_sub(most);
-        match said[kind] {
-            n if n == most => cx.say_counted(fault, rest),
-            n if n < most => cx.say(fault),
-            _ => {}
-        }
     }
 }

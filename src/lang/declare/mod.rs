@@ -10,5 +10,6 @@ pub mod pictures;
 pub mod refine;
 pub mod report_tables;
 pub mod shares;
+pub mod snap_curves;
 pub mod snap_rounds;
 pub mod snapping;

@@ -10,12 +10,12 @@
 
 use crate::base::bbox::Box3;
 use crate::base::digest::{Digest, StableHasher};
+use crate::lang::declare::snap_curves::{Turn, move_ends};
 use crate::lang::declare::snap_rounds::Rounds;
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::machine::{Code, Site};
 use crate::lang::eval::memory::Keys;
 use crate::lang::eval::module::State;
-use crate::lang::eval::pipeline::{Snapping, Turn};
 use crate::lang::eval::stages;
 use crate::lang::syntax::ast::bound;
 use crate::lang::syntax::ast::{DeclarationKind, ExprId, Keyword};
@@ -122,8 +122,8 @@ impl Cx<'_> {
         let curves = parts.curves.iter().cloned().zip(turns(Keyword::Curve)).filter_map(|(curve, turn)| Some((curve, turn?)));
         self.machine.site = Site { module, declaration: index, member: [NO_MEMBER; 2], expr };
         let origin = self.origin_at(expr);
-        let mut snapping = Snapping { curves: curves.collect(), points: points.collect(), distance, origin };
-        let result = self.pipeline.snap(self, &mut snapping);
+        let (mut curves, points): (Vec<_>, Vec<_>) = (curves.collect(), points.collect());
+        let result = move_ends(self, &mut curves, &points, distance, origin);
         let sound = result.is_ok();
         if let Err(stop) = result {
             let script = self.machine.at(module).script.clone();
@@ -133,7 +133,7 @@ impl Cx<'_> {
         }
         let said = std::mem::take(&mut self.sink.reports);
         self.machine.filed.extend(said.into_iter().map(|d| (Some((module, index)), d)));
-        let mut curves = snapping.curves.into_iter();
+        let mut curves = curves.into_iter();
         self.replace_curves(module, &|i| turn(i as u32).is_some(), &mut || curves.next().map(|c| c.0.value), moved);
         sound
     }

@@ -51,42 +51,14 @@ pub struct Sound {
     pub stands: bool,
 }
 
-/// When a curve is snapped.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Turn {
-    /// In this round.
-    Now,
-    /// In a round before; it stays from then on when other curves are made from it.
-    Before {
-        /// Whether some are.
-        named: bool,
-    },
-}
-
-/// A round of `snap`.
-#[derive(Debug)]
-pub struct Snapping {
-    /// The curves with their turns.
-    pub curves: Vec<(Declared<Chain>, Turn)>,
-    /// The declared points that ends may go to.
-    pub points: Vec<DVec3>,
-    /// Ends closer than this are brought together, model units.
-    pub distance: f64,
-    /// The expression that says the distance.
-    pub origin: Origin,
-}
-
 /// The stages that depend on everything declared; the session implements them over the kernel floors.
 ///
 /// Each is called at most once per script (mesh: per mesh); results are kept by [`Cx`].
 pub trait Pipeline: Sync {
-    /// Moves ends of measured curves together (`snap d`), before anything asks for the tolerance. What moved is replaced in
-    /// place and noted (N513).
-    fn snap(&self, cx: &mut Cx, snapping: &mut Snapping) -> Result<(), Halt>;
     /// The network of all curves, nameless ones under declared surfaces included.
     fn network(&self, cx: &mut Cx, module: ModuleId, parts: &Parts) -> Result<Arc<Network>, Halt>;
     /// Patches, edges and vertices of all these surfaces, on the network of these curves.
-    fn model(&self, cx: &mut Cx, module: ModuleId, parts: (&Parts, Arc<Network>)) -> Result<Arc<Model>, Halt>;
+    fn model(&self, cx: &mut Cx, module: ModuleId, parts: &Parts, network: Arc<Network>) -> Result<Arc<Model>, Halt>;
     /// A declared mesh.
     fn mesh(&self, cx: &mut Cx, module: ModuleId, mesh: &MeshSpec) -> Result<Arc<Mesh>, Halt>;
 }

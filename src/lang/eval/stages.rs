@@ -245,7 +245,7 @@ fn gathered(cx: &mut Cx, module: ModuleId) -> Result<Sound, Halt> {
     cx.sink.reports = sink;
     let stands = network.is_ok();
     let network = network.unwrap_or_default();
-    let model = cx.pipeline.model(cx, module, (&parts, network.clone())).map_err(|_| Halt::Broken)?;
+    let model = cx.pipeline.model(cx, module, &parts, network.clone()).map_err(|_| Halt::Broken)?;
     Ok(Sound { parts, network, model, stands })
 }
 
@@ -271,7 +271,7 @@ pub(crate) fn model(cx: &mut Cx, module: ModuleId) -> Result<Arc<Model>, Halt> {
     let parts = parts(cx, module)?;
     let make = |cx: &mut Cx| {
         let network = network(cx, module)?;
-        cx.pipeline.model(cx, module, (&parts, network))
+        cx.pipeline.model(cx, module, &parts, network)
     };
     once(cx, |cx| Some(&mut cx.machine.at_mut(module).model), make)
 }

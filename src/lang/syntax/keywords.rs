@@ -1,4 +1,17 @@
 //! The reserved words: what each is, how it is written, and what it means. Scanner, messages and reference read this table.
+//!
+//! The code below this floor that does what a declaration asks for:
+//!
+//! | word | code |
+//! |---|---|
+//! | `curve`, `modeling curve`, `point` | [`Network::build_after`](crate::network::Network::build_after) |
+//! | `snap` | [`network::snap::snap`](crate::network::snap::snap) |
+//! | `surface` | [`Model::build`](crate::model::Model::build) |
+//! | `shell` | [`Model::shell`](crate::model::Model::shell) |
+//! | `mesh`, `on`, `in`, `near`, `group` | [`mesh::Outline::build`](crate::mesh::Outline::build) |
+//! | `export` | [`endings::ending_for`](crate::io::formats::endings::ending_for), [`choice::format_for`](crate::io::formats::choice::format_for) |
+//! | `picture` | [`draw::Picture::new`](crate::draw::Picture::new) |
+//! | `tolerance` | [`Tolerance::new`](crate::base::tolerance::Tolerance::new) |
 
 use crate::lang::syntax::ast::Keyword;
 use crate::lang::syntax::token::Kind;

@@ -73,7 +73,8 @@ const fn of_mesh<const N: usize>(declared: &[Declared]) -> [Setting; N] {
     all
 }
 
-/// `shell s of … { … }`.
+/// `shell s of … { … }`: `snap` is decided by [`Model::reach`](crate::model::Model::reach), the sides of faces by
+/// [`Model::shell`](crate::model::Model::shell).
 pub const SHELL: &[Setting] = &[
     Setting {
         key: "snap",
@@ -100,7 +101,9 @@ pub const SHELL: &[Setting] = &[
     },
 ];
 
-/// `export x to "…" { … }`.
+/// `export x to "…" { … }`: `encoding` and `element` are decided by [`Format::check`](crate::io::mesh_files::format::Format::check),
+/// `schema` by [`Schema`](crate::io::step::write::Schema), `shells` by [`Shown`](crate::io::iges::write::Shown), `units` by
+/// [`Deck`](crate::io::Deck).
 pub const EXPORT: &[Setting] = &[
     Setting { key: "encoding", docs: "Binary or text.", default: "by format", ty: Ty::Choice(ENCODINGS), range: &[] },
     Setting {
