@@ -90,17 +90,7 @@ fn draw(
     interrupt::protect(model.disk.staging());
     let started = Instant::now();
     let clock = move || started.elapsed().as_secs_f64();
-    let task = Task {
-        name: model.name,
-        text: &model.text,
-        sets: &options.sets,
-        row: None,
-        strict: options.strict,
-        keep_going: false,
-        full: false,
-        picture: Some(wanted),
-        clock: &clock,
-    };
+    let task = Task { strict: options.strict, picture: Some(wanted), ..Task::new(model.name, &model.text, &options.sets, &clock) };
     guarded(|| run::run(&task, &model.disk, job))
 }
 

@@ -117,17 +117,7 @@ impl Script {
     pub fn run(&self) -> Result<Model, Error> {
         let place = self.place()?;
         let clock = || 0.0;
-        let task = Task {
-            name: &self.name,
-            text: &self.text,
-            sets: &self.sets,
-            row: None,
-            strict: self.strict,
-            keep_going: false,
-            full: true,
-            picture: None,
-            clock: &clock,
-        };
+        let task = Task { strict: self.strict, full: true, ..Task::new(&self.name, &self.text, &self.sets, &clock) };
         let (mut loaded, mut groups) = (None, Vec::new());
         let mut look = |cx: &mut Cx<'_>| {
             loaded = Loaded::of(cx);

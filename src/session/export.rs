@@ -4,6 +4,7 @@ use std::io::Write;
 
 use glam::DVec3;
 
+use super::plan::surfaces_of;
 use super::report::{OutputRow, RenamedRow};
 use crate::base::fault::{Edit, Say};
 use crate::base::limits::FILE_WORK;
@@ -73,16 +74,14 @@ fn complete(cx: &Cx, spec: &ExportSpec) -> Result<(), Halt> {
     let mut surfaces: Vec<Surface> = Vec::new();
     for (thing, _) in &spec.things {
         match thing {
-            Value::Surface(surface) => surfaces.push(surface.clone()),
-            Value::Shell(shell) => surfaces.extend(shell.surfaces.iter().cloned()),
             Value::Mesh(mesh) => {
                 if let MeshValue::Declared { module, index } = &**mesh
                     && let Some(mesh) = cx.meshes(*module).get(*index as usize)
                 {
-                    surfaces.extend(mesh.things.iter().flat_map(|(value, _)| super::plan::surfaces_of(value)).cloned());
+                    surfaces.extend(mesh.things.iter().flat_map(|(value, _)| surfaces_of(value)).cloned());
                 }
             }
-            _ => {}
+            other => surfaces.extend(surfaces_of(other).into_iter().cloned()),
         }
     }
     let Some(part) = cx.lacking(&surfaces) else { return Ok(()) };
@@ -154,18 +153,22 @@ pub(super) fn put(
     fill: &mut dyn FnMut(&mut dyn Write) -> std::io::Result<Vec<Loss>>,
 ) -> Result<Written, Halt> {
     let mut losses = Vec::new();
-    let written = files.write(&spec.path, &mut |out| fill(out).map(|found| losses = found));
-    match written {
-        Ok(bytes) => Ok((bytes, losses)),
-        Err(FileError::Outside) => Err(FileFault::Outside { of: spec.path_origin, path: spec.path.clone() }.into()),
-        Err(error) => {
-            let why = match error {
-                FileError::Other(why) => why,
-                _ => "the system refuses it".to_owned(),
-            };
-            Err(FileFault::CannotWrite { of: spec.path_origin, path: spec.path.clone(), why }.into())
-        }
-    }
+    let bytes = write_file(spec.path_origin, &spec.path, files, &mut |out| fill(out).map(|found| losses = found))?;
+    Ok((bytes, losses))
+}
+
+/// Writes a file through `fill`; gives its size. E802 outside the allowed folders, E808 where it cannot be written.
+pub(super) fn write_file(
+    of: Origin,
+    path: &str,
+    files: &dyn Files,
+    fill: &mut dyn FnMut(&mut dyn Write) -> std::io::Result<()>,
+) -> Result<u64, Halt> {
+    files.write(path, fill).map_err(|error| match error {
+        FileError::Outside => FileFault::Outside { of, path: path.to_owned() }.into(),
+        FileError::Other(why) => FileFault::CannotWrite { of, path: path.to_owned(), why }.into(),
+        _ => FileFault::CannotWrite { of, path: path.to_owned(), why: "the system refuses it".to_owned() }.into(),
+    })
 }
 
 /// Name of the file's unit of length, and model units in one of it where it is another one.

@@ -102,17 +102,7 @@ impl Live {
         let disk = disk.with_unsaved(self.unsaved.clone());
         let clock = self.clock.clone();
         let clock = move || clock();
-        let task = Task {
-            name: &self.name,
-            text: text.as_bytes(),
-            sets,
-            row: None,
-            strict: false,
-            keep_going: false,
-            full: false,
-            picture,
-            clock: &clock,
-        };
+        let task = Task { picture, ..Task::new(&self.name, text.as_bytes(), sets, &clock) };
         let mut kept = std::mem::take(&mut self.kept);
         let result = guarded(|| {
             let again = Again { kept: &mut kept, light: depth == Depth::Values, look };

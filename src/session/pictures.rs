@@ -5,6 +5,7 @@ use std::io::Write;
 use std::sync::Arc;
 
 use super::disk::Outputs;
+use super::export::write_file;
 use super::picture_names as names;
 use super::picture_things::{Things, around, corners, outline, scene_of, sort};
 use super::report::OutputRow;
@@ -17,7 +18,7 @@ use crate::base::work::{Budget, Exceeded};
 use crate::draw::picture::{FORMATS, Format, Picture, Settings};
 use crate::draw::{Kind, Line, Mark, Scene as Drawing, faces, lines, meshes};
 use crate::io::files::fault::FileFault;
-use crate::io::{FileError, Files, Sort, ending_for};
+use crate::io::{Files, Sort, ending_for};
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
 use crate::lang::eval::pipeline::Sound;
@@ -121,13 +122,8 @@ fn settings(cx: &Cx, spec: &PictureSpec, model: &str) -> Settings {
 }
 
 fn put(spec: &PictureSpec, fill: &mut dyn FnMut(&mut dyn Write) -> std::io::Result<()>, files: &dyn Files) -> Result<OutputRow, Halt> {
-    let (of, path) = (spec.path_origin, spec.path.clone());
-    match files.write(&spec.path, fill) {
-        Ok(bytes) => Ok(OutputRow { path, bytes, ..OutputRow::default() }),
-        Err(FileError::Outside) => Err(FileFault::Outside { of, path }.into()),
-        Err(FileError::Other(why)) => Err(FileFault::CannotWrite { of, path, why }.into()),
-        Err(_) => Err(FileFault::CannotWrite { of, path, why: "the system refuses it".to_owned() }.into()),
-    }
+    let bytes = write_file(spec.path_origin, &spec.path, files, fill)?;
+    Ok(OutputRow { path: spec.path.clone(), bytes, ..OutputRow::default() })
 }
 
 /// The scene of a picture.

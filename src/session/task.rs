@@ -33,6 +33,13 @@ pub struct Task<'a> {
     pub clock: &'a (dyn Fn() -> f64 + Sync),
 }
 
+impl<'a> Task<'a> {
+    /// A run without options.
+    pub fn new(name: &'a str, text: &'a [u8], sets: &'a [(String, String)], clock: &'a (dyn Fn() -> f64 + Sync)) -> Self {
+        Self { name, text, sets, row: None, strict: false, keep_going: false, full: false, picture: None, clock }
+    }
+}
+
 /// A picture asked for on the command line.
 #[derive(Clone, Debug)]
 pub struct Wanted {

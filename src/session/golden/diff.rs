@@ -141,7 +141,7 @@ fn model(path: &Path, text: &[u8], clock: &(dyn Fn() -> f64 + Sync), job: &Job) 
     let disk = Disk::new(Some(path), None, &[], Outputs::Counted);
     let disk = disk.map_err(|error| NoDiff::Unreadable(format!("{}: {error}", path.display())))?.seen_from_home();
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let task = Task { name: &name, text, sets: &[], row: None, strict: false, keep_going: false, full: true, picture: None, clock };
+    let task = Task { full: true, ..Task::new(&name, text, &[], clock) };
     let mut details = Details::default();
     let outcome = guarded(|| run::run_seen(&task, &disk, job, &mut |cx| details = details::of(cx))).map_err(NoDiff::Bug)?;
     if outcome.interrupted {

@@ -55,17 +55,7 @@ impl ModelTest<'_> {
             |error: std::io::Error| CaseResult::new(&name, Verdict::Unreadable, format!("cannot read {}: {error}", self.test.name));
         let disk = Disk::new(Some(&self.test.script), Some(&out), &[], Outputs::Written).map_err(cannot)?.seen_from_home();
         let file = self.test.script.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let task = Task {
-            name: &file,
-            text: self.text,
-            sets,
-            row: None,
-            strict: false,
-            keep_going: false,
-            full: true,
-            picture: None,
-            clock: self.settings.clock,
-        };
+        let task = Task { full: true, ..Task::new(&file, self.text, sets, self.settings.clock) };
         let mut details = Details::default();
         let look = &mut |cx: &mut Cx<'_>| details = details::of(cx);
         // A bug may leave half of something: then the next case starts from nothing.
