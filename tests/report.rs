@@ -154,6 +154,17 @@ fn the_shape_is_told_from_others() {
     assert!(!mistakes(&other).is_empty());
 }
 
+#[test]
+fn what_waits_for_a_mesh_that_failed_names_it() {
+    let text = "units mm\nsurface bow = ruled(line((0, 0, 0), (10, 0, 0)), line((0, 10, 0), (10, -100, 0)))\n\
+        mesh m of bow { size: 50mm  method: isoline }\ncheck len(m.triangles) > 0\nreport \"nodes\": len(m.nodes)\n";
+    let report = Script::new("waits", text).run(&["check"]);
+    let row = |row: &Value| (row["what"].as_str().unwrap().to_owned(), row["because"].as_str().map(str::to_owned));
+    let unmade: Vec<_> = report["unmade"].as_array().unwrap().iter().map(row).collect();
+    let waits = |what: &str| (what.to_owned(), Some("m".to_owned()));
+    assert_eq!(unmade, [("mesh".to_owned(), None), waits("check"), waits("report")]);
+}
+
 const KOREAN: &str = r#"units m
 curve s = line((0, 0), (2, 0))
 curve n = line((0, 1), (2, 1))

@@ -308,7 +308,7 @@ pub struct UnmadeRow {
     pub file: String,
     /// Line there, from 1.
     pub line: usize,
-    /// What it needs and what failed; `None` where it is wrong itself, empty where it uses what could not be read, or a mesh, network or model that failed.
+    /// What it needs and what failed; `None` where it is wrong itself, empty where it uses what could not be read, or a network or model that failed.
     pub because: Option<String>,
 }
 

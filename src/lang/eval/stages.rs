@@ -295,7 +295,12 @@ fn made_mesh(cx: &mut Cx, mesh: &MeshValue) -> Result<Arc<Mesh>, Halt> {
             let Some(spec) = cx.machine.at(module).meshes.get(index).cloned() else {
                 return Err(Halt::Bug("a mesh that was not declared"));
             };
-            once(cx, |cx| cx.machine.at_mut(module).mesh_stages.get_mut(index), |cx| cx.pipeline.mesh(cx, module, &spec))
+            let made = once(cx, |cx| cx.machine.at_mut(module).mesh_stages.get_mut(index), |cx| cx.pipeline.mesh(cx, module, &spec));
+            // What waits for a mesh that failed names it.
+            match (made, cx.program.origins.place(spec.origin)) {
+                (Err(Halt::Broken), Some(place)) => Err(Halt::Skipped(place.module, place.declaration)),
+                (made, _) => made,
+            }
         }
     }
 }

@@ -29,7 +29,7 @@ pub enum Why {
     Failed,
     /// It depends on this one, which failed.
     Waits(String),
-    /// It uses something that could not be read, or a mesh, network or model that failed.
+    /// It uses something that could not be read, or a network or model that failed.
     Unread,
 }
 
