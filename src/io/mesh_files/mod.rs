@@ -8,6 +8,7 @@ pub mod element_shape;
 pub(crate) mod elements;
 pub mod format;
 pub(crate) mod inp;
+pub(crate) mod line_reader;
 pub(crate) mod losses;
 pub(crate) mod msh;
 pub mod obj_read;

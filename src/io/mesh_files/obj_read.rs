@@ -1,17 +1,20 @@
 //! Reads Wavefront OBJ: points, polylines and polygons with their groups, and a mesh made of the polygons.
 //!
-//! A scan of our own reads `v`, `l` and `p`, joins continued lines, drops comments and texture indices, checks every
-//! index and remembers lines; the polygons then go through tobj, whose models are welded together again.
+//! tobj reads vertices and polygons from the lines of the file. What it cannot give is read here: `l`, `p`, groups and
+//! the places of mistakes. Every number and index is checked before; continued lines reach tobj joined, without
+//! comments, weights, colours and texture indices. Its corners are welded, one for each different point.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use glam::DVec3;
 
 use crate::base::math::unit;
-use crate::base::text::{parse_real, push_count, push_real};
+use crate::base::text::parse_real;
 use crate::base::triangulate::{PolygonFault, newell, polygon};
 use crate::base::{job, limits};
 use crate::io::files::fault::Malformed;
+use crate::io::mesh_files::line_reader::LineReader;
 use crate::io::mesh_files::weld::weld;
 use crate::mesh::{FaceRange, Group, Mesh};
 
@@ -61,13 +64,13 @@ pub fn read(bytes: &[u8]) -> Result<Obj, Malformed> {
             joined.push_str(head);
             joined.push(' ');
         } else if joined.is_empty() {
-            scan.line(content, start)?;
+            scan.line(Cow::Borrowed(content), start)?;
         } else {
             joined.push_str(content);
-            scan.line(&std::mem::take(&mut joined), start)?;
+            scan.line(Cow::Owned(std::mem::take(&mut joined)), start)?;
         }
     }
-    scan.line(&joined, start)?;
+    scan.line(Cow::Owned(joined), start)?;
     scan.finish()
 }
 
@@ -86,8 +89,11 @@ fn shortened(word: &str) -> String {
     word.chars().take(20).collect()
 }
 
+/// What is known of the lines read so far.
 #[derive(Default)]
-struct Scan {
+struct Scan<'t> {
+    /// Lines with a vertex or a polygon, as tobj reads them.
+    for_tobj: Vec<Cow<'t, str>>,
     vertices: Vec<DVec3>,
     points: Vec<Element>,
     polylines: Vec<Element>,
@@ -102,15 +108,23 @@ struct Scan {
     size: usize,
 }
 
-impl Scan {
-    fn line(&mut self, content: &str, line: u64) -> Result<(), Malformed> {
+impl<'t> Scan<'t> {
+    fn line(&mut self, content: Cow<'t, str>, line: u64) -> Result<(), Malformed> {
         let mut words = content.split_whitespace();
         let Some(keyword) = words.next() else { return Ok(()) };
         match keyword {
-            "v" => self.vertex(words, line)?,
+            "v" => {
+                let end = self.vertex(&content, line)?;
+                self.for_tobj.push(match content {
+                    Cow::Borrowed(content) => Cow::Borrowed(&content[..end]),
+                    Cow::Owned(content) => Cow::Owned(content[..end].to_owned()),
+                });
+            }
             "f" => {
                 let element = self.element(words, line, 3, "a face")?;
                 self.polygons.push(element);
+                let plain = !content.contains('/');
+                self.for_tobj.push(if plain { content } else { Cow::Owned(without_texture(&content)) });
             }
             "l" => {
                 let element = self.element(words, line, 2, "a line")?;
@@ -142,15 +156,16 @@ impl Scan {
         Ok(())
     }
 
-    /// Three coordinates; a weight or a colour behind them is nothing to a polygon.
-    fn vertex<'w>(&mut self, words: impl Iterator<Item = &'w str>, line: u64) -> Result<(), Malformed> {
+    /// Three coordinates; a weight or a colour behind them does not move a polygon. Gives where the coordinates end in the line.
+    fn vertex(&mut self, content: &str, line: u64) -> Result<usize, Malformed> {
         let mut p = [0.0; 3];
-        let mut n = 0;
-        for (k, word) in words.enumerate() {
+        let (mut n, mut end) = (0, 0);
+        for (k, word) in content.split_whitespace().skip(1).enumerate() {
             match parse_real(word) {
                 Some(x) if x.is_finite() => {
                     if let Some(place) = p.get_mut(k) {
                         *place = x;
+                        end = word.as_ptr() as usize - content.as_ptr() as usize + word.len();
                     }
                 }
                 _ => return Err(Malformed::at(line, k as u64 + 2, format!("`{}` is not a coordinate", shortened(word)))),
@@ -162,7 +177,7 @@ impl Scan {
         }
         self.vertices.push(p.into());
         self.size += 1;
-        Ok(())
+        Ok(end)
     }
 
     /// Vertex indices from 0; those beyond the vertices are found at the end, when all are known.
@@ -224,24 +239,8 @@ impl Scan {
 
     /// Different corner points and the polygons on them.
     fn through_tobj(&self) -> Result<(Vec<DVec3>, Vec<Vec<u32>>), Malformed> {
-        let mut text = Vec::new();
-        for p in job::looking(&self.vertices) {
-            text.push(b'v');
-            for x in p.to_array() {
-                text.push(b' ');
-                push_real(&mut text, x);
-            }
-            text.push(b'\n');
-        }
-        for element in job::looking(&self.polygons) {
-            text.push(b'f');
-            for index in &element.indices {
-                text.push(b' ');
-                push_count(&mut text, u64::from(*index) + 1);
-            }
-            text.push(b'\n');
-        }
-        let (models, _) = tobj::load_obj_buf(&mut text.as_slice(), &tobj::LoadOptions::default(), |_| Err(tobj::LoadError::GenericFailure))
+        let mut lines = LineReader::new(&self.for_tobj);
+        let (models, _) = tobj::load_obj_buf(&mut lines, &tobj::LoadOptions::default(), |_| Err(tobj::LoadError::GenericFailure))
             .map_err(|e| Malformed::line(1, e.to_string()))?;
         let mut corners: Vec<DVec3> = Vec::new();
         let mut polygons = Vec::with_capacity(self.polygons.len());
@@ -263,6 +262,16 @@ impl Scan {
         polygons.iter_mut().flatten().for_each(|index| *index = places[*index as usize]);
         Ok((vertices, polygons))
     }
+}
+
+/// A line of a polygon with the indices of its vertices only.
+fn without_texture(content: &str) -> String {
+    let mut line = String::with_capacity(content.len());
+    for word in content.split_whitespace() {
+        line.push_str(word.split('/').next().unwrap_or(""));
+        line.push(' ');
+    }
+    line
 }
 
 fn skipped(word: &str, line: u64, n: usize) -> Malformed {
