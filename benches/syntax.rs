@@ -1,14 +1,26 @@
-//! Text to tree: 100 000 points and 100 000 lines of two shapes, and a script where every shape is new.
+//! Text to tree: 100 000 points and 100 000 lines of two shapes, and a script where every shape is new; then 10 MB of
+//! declarations, parsed as scripts are and by the parser that pest generates, which gives its pairs and no tree.
 //!
-//! The peer is `benches/peers/p6_startup.py`.
+//! The peer of the first is `benches/peers/p6_startup.py`; what the last shows is in `docs/notes/syntax.md`.
 #![allow(clippy::unwrap_used, clippy::panic, clippy::disallowed_methods, missing_docs, reason = "a benchmark is no product code")]
 
 use std::fmt::Write as _;
 
-use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
+use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use lofting::lang::diag::diagnostic::FileId;
 use lofting::lang::syntax::parse;
 use lofting::lang::words::names::Names;
+use pest::Parser as _;
+
+/// The generated parser alone.
+mod grammar {
+    #[derive(pest_derive::Parser)]
+    #[grammar = "../grammar/loft.pest"]
+    pub struct Grammar;
+}
+
+/// Bytes of a long script.
+const BYTES: usize = 10_000_000;
 
 /// The script of the peer.
 fn points_and_lines(n: usize) -> String {
@@ -32,6 +44,38 @@ fn new_shapes(n: usize) -> String {
     text
 }
 
+/// Sums of which hardly two have the same tokens in the same order.
+fn new_sums() -> String {
+    let (mut text, mut seed) = (String::new(), 1_u64);
+    let mut random = |below: u64| {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 33) % below
+    };
+    for i in 0.. {
+        let _ = write!(text, "let v{i} = a");
+        for _ in 0..random(40) {
+            let operator = ["+", "-", "*", "/"][random(4) as usize];
+            let operand = ["b1", "2.5", "3m", "(1, 2, 3m)", "p.x", "f(a, of: b)", "[a, b]", "c[i]", "(a - 1)"][random(9) as usize];
+            let _ = write!(text, " {operator} {operand}");
+        }
+        text.push('\n');
+        if text.len() > BYTES {
+            break;
+        }
+    }
+    text
+}
+
+/// One declaration.
+fn one_list() -> String {
+    let mut text = "let points = [".to_owned();
+    while text.len() < BYTES {
+        text += "(1.5, 22.25, 3m), ";
+    }
+    text += "(0, 0, 0)]\n";
+    text
+}
+
 fn parsing(c: &mut Criterion) {
     let mut group = c.benchmark_group("parse");
     group.sample_size(10);
@@ -39,7 +83,7 @@ fn parsing(c: &mut Criterion) {
         ("200 000 declarations of two shapes", points_and_lines(100_000)),
         ("16 000 declarations, each of a new shape", new_shapes(16_000)),
     ] {
-        group.throughput(criterion::Throughput::Bytes(text.len() as u64));
+        group.throughput(Throughput::Bytes(text.len() as u64));
         group.bench_function(name, |b| {
             b.iter_batched_ref(Names::default, |names| parse(&text, FileId(0), names), BatchSize::PerIteration);
         });
@@ -47,5 +91,20 @@ fn parsing(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, parsing);
+fn parsers(c: &mut Criterion) {
+    let mut group = c.benchmark_group("10 MB");
+    group.sample_size(10);
+    for (name, text) in [("two shapes", points_and_lines(150_000)), ("new shapes", new_sums()), ("one list", one_list())] {
+        group.throughput(Throughput::Bytes(text.len() as u64));
+        group.bench_function(format!("{name}, tree"), |b| {
+            b.iter_batched_ref(Names::default, |names| parse(&text, FileId(0), names), BatchSize::PerIteration);
+        });
+        group.bench_function(format!("{name}, pairs of pest"), |b| {
+            b.iter(|| grammar::Grammar::parse(grammar::Rule::script, &text).unwrap().len());
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, parsing, parsers);
 criterion_main!(benches);

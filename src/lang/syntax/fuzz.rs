@@ -197,9 +197,9 @@ fn tokens_match_as_characters(text: &str, script: &Script) {
         let mut found = Vec::new();
         collect(pair, &mut found);
         let token = |byte: usize| tokens.starts.partition_point(|&start| (start as usize) < byte);
-        let told: Vec<Rule> = peg::RULES.as_ref().unwrap().iter().filter_map(|rule| rule.told).collect();
+        let produced: Vec<Rule> = token_rules::RULES.as_ref().unwrap().iter().filter_map(|rule| rule.pair).collect();
         let pairs = Grammar::parse(Rule::single, alone).unwrap_or_else(|e| panic!("{e}")).flatten();
-        let pairs = pairs.filter(|p| told.contains(&p.as_rule()));
+        let pairs = pairs.filter(|p| produced.contains(&p.as_rule()));
         let expected: Vec<(Rule, usize, usize)> =
             pairs.map(|p| (p.as_rule(), token(p.as_span().start()), token(p.as_span().end()))).collect();
         assert_eq!(found, expected, "{alone}");
@@ -215,8 +215,8 @@ fn collect(pair: matching::Pair<'_>, out: &mut Vec<(Rule, usize, usize)>) {
 /// The rules over tokens are all of those that a declaration needs.
 #[test]
 fn the_grammar_is_read() {
-    let rules = peg::RULES.as_ref().expect("the grammar holds only what is read here");
-    assert!(rules.len() > 40 && rules.iter().all(|rule| !matches!(rule.op, peg::Op::Nothing)), "{rules:?}");
+    let rules = token_rules::RULES.as_ref().expect("the grammar holds only what is read here");
+    assert!(rules.len() > 40 && rules.iter().all(|rule| !matches!(rule.op, token_rules::Op::Nothing)), "{rules:?}");
 }
 
 fn check(text: &str) -> Result<(), TestCaseError> {

@@ -1,10 +1,10 @@
-//! Matching the tokens of a declaration against the rules of [`super::peg`].
+//! Matching the tokens of a declaration against the rules of [`super::token_rules`].
 
 use crate::lang::diag::span::Span;
 use crate::lang::syntax::Rule;
-use crate::lang::syntax::peg::{Op, RULES, TokenRule, bit};
 use crate::lang::syntax::scan::Tokens;
 use crate::lang::syntax::token::Kind;
+use crate::lang::syntax::token_rules::{Op, RULES, TokenRule, bit};
 
 /// A rule that matched.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,7 +59,7 @@ impl Marks {
         let rules = RULES.as_ref()?;
         self.0.clear();
         let kinds = &tokens.kinds[base..end];
-        let mut matcher = Matcher { rules, kinds, first: &tokens.first[base..end], at: 0, told: true, marks: &mut self.0 };
+        let mut matcher = Matcher { rules, kinds, first: &tokens.first[base..end], at: 0, has_pairs: true, marks: &mut self.0 };
         if !matcher.rule(0) {
             return None;
         }
@@ -72,7 +72,8 @@ struct Matcher<'a> {
     kinds: &'a [Kind],
     first: &'a [bool],
     at: usize,
-    told: bool,
+    /// Whether matches produce pairs; not inside an atomic rule.
+    has_pairs: bool,
     marks: &'a mut Vec<Mark>,
 }
 
@@ -86,15 +87,15 @@ impl Matcher<'_> {
     fn rule(&mut self, number: usize) -> bool {
         let rules = self.rules;
         let rule = &rules[number];
-        let (Some(told), true) = (rule.told, self.told) else { return self.step(&rule.op) };
+        let (Some(produced), true) = (rule.pair, self.has_pairs) else { return self.step(&rule.op) };
         let (start, mark) = (self.at, self.marks.len());
-        self.marks.push(Mark { rule: told, start: start as u32, end: 0, size: 0 });
-        self.told = !rule.atomic;
+        self.marks.push(Mark { rule: produced, start: start as u32, end: 0, size: 0 });
+        self.has_pairs = !rule.atomic;
         let found = self.step(&rule.op);
-        self.told = true;
+        self.has_pairs = true;
         if found {
             let size = (self.marks.len() - mark) as u32;
-            self.marks[mark] = Mark { rule: told, start: start as u32, end: self.at as u32, size };
+            self.marks[mark] = Mark { rule: produced, start: start as u32, end: self.at as u32, size };
         } else {
             self.marks.truncate(mark);
         }
@@ -126,8 +127,7 @@ impl Matcher<'_> {
                 self.step(part);
                 true
             }
-            Op::Not(part) => !self.sees(part),
-            Op::Look(part) => self.sees(part),
+            Op::NotAhead(part) => !self.is_ahead(part),
             Op::SameLine => !self.first.get(self.at).is_some_and(|first| *first),
             Op::Nothing => true,
             Op::End => self.at == self.kinds.len(),
@@ -135,7 +135,7 @@ impl Matcher<'_> {
         }
     }
 
-    fn sees(&mut self, op: &Op) -> bool {
+    fn is_ahead(&mut self, op: &Op) -> bool {
         let (at, mark) = (self.at, self.marks.len());
         let found = self.step(op);
         self.back(at, mark);

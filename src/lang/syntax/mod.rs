@@ -1,7 +1,7 @@
 //! Text to tree. The only place that knows pest.
 //!
 //! ```text
-//! bytes → tokens (scan) → pieces (split) → shapes (peg, matching, tree, climb; each shape once) → declarations (shape)
+//! bytes → tokens (scan) → pieces (split) → shapes (matching, tree, climb; each shape once) → declarations (shape)
 //! ```
 //!
 //! Parsing never stops at a mistake: every piece stands for itself, the sound ones are kept, and the names of broken
@@ -17,12 +17,12 @@ pub mod matching;
 pub mod mistake;
 pub mod number;
 pub mod outline;
-pub mod peg;
 pub mod scan;
 pub mod scopes;
 pub mod shape;
 pub mod split;
 pub mod token;
+pub mod token_rules;
 pub mod tree;
 
 use std::ops::Range;
