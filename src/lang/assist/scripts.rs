@@ -58,7 +58,7 @@ impl Unit {
             }
         }
         for (at, declaration) in script.declarations.iter().enumerate().rev() {
-            let Some(bound) = crate::lang::syntax::ast::bound(declaration) else { continue };
+            let Some(bound) = crate::lang::syntax::scopes::bound(declaration) else { continue };
             let entry = Entry { keyword: declaration.keyword, declaration: Some(at) };
             declared.insert(names.text(bound.name).to_owned(), entry);
         }

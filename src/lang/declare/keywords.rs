@@ -1,14 +1,15 @@
 //! Declarations: what each keyword makes of its right side.
 
 use crate::base::origin::Origin;
+use crate::lang::declare::collections::Contents;
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
 use crate::lang::eval::later::keyword_word;
 use crate::lang::eval::machine::{Code, Gather};
 use crate::lang::eval::room::LIST_COST;
 use crate::lang::eval::std;
-use crate::lang::syntax::ast::bound;
 use crate::lang::syntax::ast::{Declaration, DeclarationKind, ExprId, FnParam, For, Keyword, TypeName};
+use crate::lang::syntax::scopes::bound;
 use crate::lang::values::origins::{NO_MEMBER, Place};
 use crate::lang::values::types::{TYPE_NAMES, Ty};
 use crate::lang::values::value::{ModuleId, Value};
@@ -33,7 +34,7 @@ impl Cx<'_> {
             }
             DeclarationKind::Load { path, args, .. } => self.import(code, *path, args),
             DeclarationKind::Collection { family, things, settings, clauses, .. } => {
-                self.collection(code, declaration, family, things, (settings, clauses))
+                self.collection(code, declaration, family, Contents { things, settings, clauses })
             }
             DeclarationKind::Output { .. } => self.output(code, declaration),
             DeclarationKind::Units(_) | DeclarationKind::Tolerance(_) | DeclarationKind::Snap(_) => Ok(Value::None),

@@ -9,6 +9,7 @@ pub mod params;
 pub mod pictures;
 pub mod refine;
 pub mod report_tables;
+pub mod setting_values;
 pub mod shares;
 pub mod snap_curves;
 pub mod snap_rounds;

@@ -3,12 +3,12 @@
 use std::sync::Arc;
 
 use crate::base::origin::Origin;
-use crate::lang::declare::collections::{find, said, truth};
+use crate::lang::declare::setting_values::{find, said, truth};
 use crate::lang::diag::diagnostic::Diagnostic;
+use crate::lang::eval::comparisons::Comparison;
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
 use crate::lang::eval::machine::{Code, Gather};
-use crate::lang::eval::operators::Comparison;
 use crate::lang::syntax::ast;
 use crate::lang::syntax::ast::{Declaration, DeclarationKind, Expr, ExprId, Keyword};
 use crate::lang::values::plans::{CheckResult, ExportSpec, ReportTable};

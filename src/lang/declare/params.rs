@@ -3,18 +3,17 @@
 use std::sync::Arc;
 
 use crate::lang::diag::diagnostic::{Diagnostic, FileId};
+use crate::lang::diag::span::Span;
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
 use crate::lang::eval::machine::Code;
 use crate::lang::eval::module::{Given, Written};
-use crate::lang::syntax::ast::bound;
-use crate::lang::words::names::nearest;
-
-use crate::lang::diag::span::Span;
 use crate::lang::syntax::ast::{Allowed, Bound, DeclarationKind, Expr, ExprId, Keyword, Node, TextPart, TypeName, Unary};
+use crate::lang::syntax::scopes::bound;
 use crate::lang::values::types::Ty;
 use crate::lang::values::units;
 use crate::lang::values::value::{Dim, ModuleId, Quantity, Value};
+use crate::lang::words::names::nearest;
 
 impl Cx<'_> {
     pub(crate) fn param(
@@ -132,7 +131,7 @@ impl Cx<'_> {
                 }
                 let near = |a: &Value, b: &Value| match (a, b) {
                     (Value::Number(x), Value::Number(y)) => x.value == y.value,
-                    _ => crate::lang::eval::operators::same(a, b) == Some(true),
+                    _ => crate::lang::eval::comparisons::same(a, b) == Some(true),
                 };
                 let texts: Vec<String> = choices.iter().map(|c| self.show_inside(c)).collect();
                 (format!("one of {}", texts.join(", ")), choices.iter().any(|c| near(c, value)))

@@ -7,7 +7,7 @@ use glam::DVec3;
 use crate::base::limits;
 use crate::base::origin::Origin;
 use crate::draw::View;
-use crate::lang::declare::collections::{Resolved, find};
+use crate::lang::declare::setting_values::{Resolved, find};
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
 use crate::lang::eval::machine::{Code, Gather};

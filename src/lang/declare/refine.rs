@@ -1,13 +1,12 @@
 //! `near` and `in` clauses of a mesh: places where elements are smaller.
 
-use crate::lang::declare::collections::filled;
-use crate::lang::eval::context::Cx;
-use crate::lang::eval::halt::Halt;
-
 use crate::base::bbox::Box3;
 use crate::base::origin::Origin;
+use crate::lang::declare::setting_values::filled;
 use crate::lang::declare::shares::Meshed;
 use crate::lang::diag::span::Span;
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::halt::Halt;
 use crate::lang::eval::machine::{Code, Gather};
 use crate::lang::syntax::ast::{ClauseWord, ExprId, Keyword, MeshClause};
 use crate::lang::values::plans::RefineSpec;
@@ -47,7 +46,7 @@ impl Cx<'_> {
     }
 
     fn near_things(&mut self, code: Code<'_>, things: &[ExprId]) -> Result<Vec<(Value, Origin)>, Halt> {
-        let found = self.things_for(code, things, (Keyword::Group, "clause `near`"))?;
+        let found = self.things_for(code, things, Keyword::Group, "clause `near`")?;
         let fits = |v: &Value| {
             matches!(v, Value::Vector(..) | Value::Node(_) | Value::Vertex(..) | Value::Curve(_) | Value::Link(..) | Value::Edge(..))
         };

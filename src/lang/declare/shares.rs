@@ -2,7 +2,7 @@
 
 use crate::base::bbox::Box3;
 use crate::base::origin::Origin;
-use crate::lang::declare::collections::Resolved;
+use crate::lang::declare::setting_values::Resolved;
 use crate::lang::diag::diagnostic::Label;
 use crate::lang::diag::span::Span;
 use crate::lang::eval::context::Cx;

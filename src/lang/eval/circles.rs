@@ -4,8 +4,8 @@ use crate::lang::diag::diagnostic::Label;
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
 use crate::lang::eval::machine::Code;
-use crate::lang::syntax::ast::bound;
 use crate::lang::syntax::ast::{Expr, Keyword, Node};
+use crate::lang::syntax::scopes::bound;
 use crate::lang::values::value::ModuleId;
 
 /// Why a circle closes that no name closes.

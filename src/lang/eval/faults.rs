@@ -9,8 +9,8 @@ use crate::lang::diag::span::Span;
 use crate::lang::eval::bind::Blame;
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::machine::Code;
-use crate::lang::syntax::ast::bound;
 use crate::lang::syntax::ast::{DeclarationKind, ExprId};
+use crate::lang::syntax::scopes::bound;
 use crate::lang::values::origins::{NO_MEMBER, Place};
 use crate::lang::values::value::ModuleId;
 

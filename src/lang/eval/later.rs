@@ -7,7 +7,7 @@ use crate::lang::eval::machine::Code;
 use crate::lang::eval::misspelt::{Among, Unknown};
 use crate::lang::eval::std;
 use crate::lang::syntax::ast::{Arg, Expr, ExprId, Keyword};
-use crate::lang::syntax::foreign::{PRINTS, range};
+use crate::lang::syntax::foreign::statements::{PRINTS, range};
 use crate::lang::values::value::{ModuleId, Value};
 use crate::lang::words::elsewhere::instead;
 use crate::lang::words::names::Name;

@@ -32,7 +32,7 @@ impl Cx<'_> {
         self.set_unit(id);
         let script = self.machine.at(id).script.clone();
         for (first, second) in twice {
-            let bound = |i: u32| crate::lang::syntax::ast::bound(&script.declarations[i as usize]);
+            let bound = |i: u32| crate::lang::syntax::scopes::bound(&script.declarations[i as usize]);
             let (Some(a), Some(b)) = (bound(first), bound(second)) else { continue };
             let text = self.program.names.text(b.name);
             let diagnostic = Diagnostic::new("E202", format!("`{text}` is defined twice"), file, b.span, "again here")

@@ -12,7 +12,7 @@ use crate::lang::eval::context::Cx;
 use crate::lang::eval::later::keyword_word;
 use crate::lang::eval::std;
 use crate::lang::syntax::ast::Keyword;
-use crate::lang::syntax::ast::bound;
+use crate::lang::syntax::scopes::bound;
 use crate::lang::values::value::ModuleId;
 use crate::lang::words::elsewhere::meant;
 use crate::lang::words::lookalikes;

@@ -1,13 +1,16 @@
 //! Evaluation: declarations on demand, expressions, calls and builtins.
 
+pub mod access;
 pub mod bind;
 pub mod call;
 pub mod came_from;
 pub mod circles;
 pub mod coerce;
+pub mod comparisons;
 pub mod context;
 pub mod drafts;
 pub mod element_words;
+pub mod evaluate;
 pub mod expr;
 pub mod faults;
 pub mod glued;
@@ -21,6 +24,7 @@ pub mod many;
 pub mod meetings;
 pub mod members;
 pub mod memory;
+pub mod misfits;
 pub mod misspelt;
 pub mod module;
 pub mod operators;

@@ -1,6 +1,5 @@
 //! One evaluated script: its declarations, their states and what they have produced.
 
-use crate::lang::syntax::ast::bound;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -10,6 +9,7 @@ use crate::lang::diag::span::Span;
 use crate::lang::eval::memory::{Dependencies, Keys};
 use crate::lang::eval::pipeline::{Parts, Sound};
 use crate::lang::syntax::ast::{Allowed, Declaration, DeclarationKind, Expr, Script};
+use crate::lang::syntax::scopes::bound;
 use crate::lang::values::plans::{CheckResult, ExportSpec, MeshSpec, PictureSpec, ReportTable};
 use crate::lang::values::units::LengthUnit;
 use crate::lang::values::value::{ModuleId, Value};

@@ -14,7 +14,7 @@ use crate::lang::eval::halt::Halt;
 use crate::lang::eval::module::State;
 use crate::lang::eval::stages;
 use crate::lang::syntax::ast::Keyword;
-use crate::lang::syntax::ast::bound;
+use crate::lang::syntax::scopes::bound;
 use crate::lang::values::value::{Home, ModuleId, ShellValue, Value};
 use crate::model::topology::Named;
 use crate::model::{Model, SharedEdge, Shell, ShellRequest, SurfaceId};

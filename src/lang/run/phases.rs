@@ -1,11 +1,11 @@
 //! A run from the first declaration to the last report: phases around the tolerance, and what is said in the end.
 
-use crate::lang::declare::params::TableRow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use crate::base::fault::{Say, Severity};
 use crate::base::tolerance::{EPSILON, Tolerance};
+use crate::lang::declare::params::TableRow;
 use crate::lang::diag::diagnostic;
 use crate::lang::diag::diagnostic::Diagnostic;
 use crate::lang::eval::context::Cx;
@@ -14,8 +14,8 @@ use crate::lang::eval::machine::Code;
 use crate::lang::eval::module::{Stage, State};
 use crate::lang::eval::sink::SAID_JUST_NOW;
 use crate::lang::eval::stages;
-use crate::lang::syntax::ast::bound;
 use crate::lang::syntax::ast::{DeclarationKind, ExprId, Keyword};
+use crate::lang::syntax::scopes::bound;
 use crate::lang::values::plans::{CheckResult, ExportSpec, PictureSpec, ReportTable};
 use crate::lang::values::types::Ty;
 use crate::lang::values::units;

@@ -6,7 +6,7 @@ use crate::lang::diag::span::Span;
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::module::State;
 use crate::lang::syntax::ast::Keyword;
-use crate::lang::syntax::ast::bound;
+use crate::lang::syntax::scopes::bound;
 use crate::lang::values::types::Ty;
 use crate::lang::values::units;
 use crate::lang::values::units::unit_text;

@@ -4,7 +4,7 @@ use crate::lang::diag::diagnostic::FileId;
 use crate::lang::diag::span::Span;
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::module::{Stage, State};
-use crate::lang::syntax::ast::bound;
+use crate::lang::syntax::scopes::bound;
 use crate::lang::values::value::ModuleId;
 
 /// Something that was not made.

@@ -388,15 +388,3 @@ pub struct Script {
     /// Names that broken declarations would have bound: what uses them is skipped without a message.
     pub broken: Vec<Bound>,
 }
-
-/// The name that a declaration binds.
-pub(crate) fn bound(declaration: &Declaration) -> Option<Bound> {
-    match &declaration.kind {
-        DeclarationKind::Load { bound, .. }
-        | DeclarationKind::Param { bound, .. }
-        | DeclarationKind::Fn { bound, .. }
-        | DeclarationKind::Value { bound, .. }
-        | DeclarationKind::Collection { bound, .. } => Some(*bound),
-        _ => None,
-    }
-}

@@ -10,6 +10,7 @@
 pub mod ast;
 pub mod climb;
 pub mod expected;
+pub mod expected_words;
 pub mod fixes;
 pub mod foreign;
 pub mod keywords;
@@ -24,6 +25,7 @@ pub mod split;
 pub mod token;
 pub mod token_rules;
 pub mod tree;
+pub mod tree_expressions;
 
 use std::ops::Range;
 use std::rc::Rc;
@@ -94,7 +96,7 @@ fn read_as(source: &str, file: FileId, names: &mut Names, fills: bool) -> Read {
         fills,
         script: Script::default(),
         found: Vec::new(),
-        fresh: foreign::FreshNames::default(),
+        fresh: foreign::fresh_names::FreshNames::default(),
         sound: Vec::with_capacity(pieces.len()),
     }
     .run(pieces, mistakes);
@@ -125,7 +127,7 @@ struct Parser<'a> {
     fills: bool,
     script: Script,
     found: Vec<Diagnostic>,
-    fresh: foreign::FreshNames,
+    fresh: foreign::fresh_names::FreshNames,
     /// Tokens of the declarations.
     sound: Vec<Range<usize>>,
 }
@@ -275,7 +277,7 @@ impl Parser<'_> {
             let next = (end > base + 1).then(|| self.tokens.span(base + 1));
             let mistake = Mistake::NoKeyword { span: self.tokens.span(base), next, binds: kinds.get(1) == Some(&Kind::Equals) };
             let report = mistake.diagnose(self.source, self.file);
-            let refusal = || foreign::Refusal::new((self.source, self.tokens), base..end, base, &self.fresh);
+            let refusal = || foreign::Refusal::new(self.source, self.tokens, base..end, base, &self.fresh);
             self.found.push(foreign::say(report, refusal().meant()));
         }
         let bound = match kinds {

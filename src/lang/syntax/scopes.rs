@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::lang::diag::span::Span;
-use crate::lang::syntax::ast::{Arg, Clause, Declaration, DeclarationKind, Expr, ExprId, For, Keyword, Script, TextPart};
+use crate::lang::syntax::ast::{Arg, Bound, Clause, Declaration, DeclarationKind, Expr, ExprId, For, Keyword, Script, TextPart};
 use crate::lang::words::names::Name;
 
 /// What a name is bound to where it stands.
@@ -36,7 +36,6 @@ pub struct Occurrence {
 
 /// All names of a script, in order of place.
 pub fn occurrences(script: &Script) -> Vec<Occurrence> {
-    let bound = |d: &Declaration| crate::lang::syntax::ast::bound(d);
     // Of two declarations of a name the first one counts.
     let declared: BTreeMap<Name, usize> =
         script.declarations.iter().enumerate().rev().filter_map(|(i, d)| Some((bound(d)?.name, i))).collect();
@@ -217,6 +216,18 @@ impl Walker<'_> {
                 self.locals.truncate(outer);
             }
         }
+    }
+}
+
+/// The name that a declaration binds.
+pub(crate) fn bound(declaration: &Declaration) -> Option<Bound> {
+    match &declaration.kind {
+        DeclarationKind::Load { bound, .. }
+        | DeclarationKind::Param { bound, .. }
+        | DeclarationKind::Fn { bound, .. }
+        | DeclarationKind::Value { bound, .. }
+        | DeclarationKind::Collection { bound, .. } => Some(*bound),
+        _ => None,
     }
 }
 

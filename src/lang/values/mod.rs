@@ -1,5 +1,6 @@
 //! What scripts work with: values, their types and units, origins, and what declarations ask for as plain data.
 
+pub mod conversions;
 pub mod origins;
 pub mod part;
 pub mod places;

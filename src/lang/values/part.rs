@@ -4,14 +4,14 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::base::origin::Origin;
-use crate::io::files::fault::Malformed;
-use crate::lang::values::types::{FromValue, Ty};
-use crate::lang::values::value::{BodyKind, ModuleId, ShellValue, Value};
-use crate::lang::words::plural::counted;
-
 use crate::io::cad::assembly::Node;
 use crate::io::cad::healing::{Repair, Rule};
 use crate::io::cad::part::Unusable;
+use crate::io::files::fault::Malformed;
+use crate::lang::values::conversions::FromValue;
+use crate::lang::values::types::Ty;
+use crate::lang::values::value::{BodyKind, ModuleId, ShellValue, Value};
+use crate::lang::words::plural::counted;
 use crate::surface::Surface;
 
 /// What a file says of one surface.

@@ -3,7 +3,7 @@
 use crate::base::fault::{Say, ValueFault};
 use crate::builtins;
 use crate::lang::eval::std::surfaces::finished;
-use crate::lang::values::types::{Length, Point};
+use crate::lang::values::conversions::{Length, Point};
 use crate::surface::{Surface, rolling};
 
 builtins! {

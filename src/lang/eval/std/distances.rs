@@ -12,7 +12,7 @@ use crate::lang::eval::halt::Halt;
 use crate::lang::eval::scene::Scene;
 use crate::lang::eval::std::kinds::CurveOrFaces;
 use crate::lang::eval::std::vectors::{not_zero, together, vector};
-use crate::lang::values::types::{Angle, Point, Vector};
+use crate::lang::values::conversions::{Angle, Point, Vector};
 use crate::lang::values::value::{Dim, Quantity, Value};
 use crate::model::apart::{between, from_curve};
 use crate::network::Chain;

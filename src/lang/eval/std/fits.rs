@@ -7,7 +7,8 @@ use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
 use crate::lang::eval::std::curves::{places, unit, whole};
 use crate::lang::eval::std::surfaces::{finished, rows};
-use crate::lang::values::types::{Angle, Direction, FromValue, Length, Point, Ty};
+use crate::lang::values::conversions::{Angle, Direction, FromValue, Length, Point};
+use crate::lang::values::types::Ty;
 use crate::lang::values::value::Value;
 use crate::surface;
 

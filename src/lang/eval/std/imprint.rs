@@ -5,7 +5,7 @@ use crate::builtins;
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
 use crate::lang::eval::std::kinds::SurfaceOrShell;
-use crate::lang::values::types::Rest;
+use crate::lang::values::conversions::Rest;
 use crate::model::topology::Named;
 use crate::model::{Model, SurfaceId};
 use crate::network::Network;

@@ -7,7 +7,7 @@ use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
 use crate::lang::eval::scene::Scene;
 use crate::lang::eval::std::kinds::{EdgeOf, EdgeOrSurface, Faces};
-use crate::lang::values::types::{Angle, Length};
+use crate::lang::values::conversions::{Angle, Length};
 use crate::lang::values::value::Value;
 use crate::model::fault::ModelFault;
 use crate::model::{Contact, EdgeId, SurfaceId};

@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use crate::lang::values::types::{FromValue, IntoValue, Point, Ty};
+use crate::lang::values::conversions::{FromValue, IntoValue, Point};
+use crate::lang::values::types::Ty;
 use crate::lang::values::value::{Home, MeshValue, ModuleId, Plane, ShellValue, Value};
 use crate::model::{PatchId, SharedEdge, VertexId};
 use crate::network::{Chain, LinkId};

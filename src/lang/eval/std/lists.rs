@@ -5,10 +5,11 @@ use std::sync::Arc;
 
 use crate::base::fault::ValueFault;
 use crate::builtins;
+use crate::lang::eval::comparisons::same;
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
-use crate::lang::eval::operators::same;
-use crate::lang::values::types::{Rest, dim_words};
+use crate::lang::values::conversions::Rest;
+use crate::lang::values::types::dim_words;
 use crate::lang::values::value::Value;
 
 /// The order of two values that have one; `None` for kinds or dimensions that differ.

@@ -9,7 +9,7 @@ use crate::base::fault::ValueFault;
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
 use crate::lang::eval::std::kinds::PatchOf;
-use crate::lang::values::types::{Area, Point, Volume};
+use crate::lang::values::conversions::{Area, Point, Volume};
 use crate::lang::values::value::{MeshValue, ShellValue, Value};
 use crate::model::measure;
 use crate::network::Chain;

@@ -7,7 +7,7 @@ use crate::base::job;
 use crate::geometry::construct::build;
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
-use crate::lang::values::types::{Angle, Length, Point};
+use crate::lang::values::conversions::{Angle, Length, Point};
 use crate::lang::values::value::{MeshValue, Plane, Value};
 use crate::mesh::Mesh;
 use crate::mesh::data::quality::Quality;

@@ -5,9 +5,11 @@
 
 pub mod blends;
 pub mod choosing;
+pub mod curve_nets;
 pub mod curves;
 pub mod data;
 pub mod distances;
+pub mod elementary;
 pub mod fits;
 pub mod imprint;
 pub mod joins;
@@ -19,23 +21,25 @@ pub mod nets;
 pub mod network;
 pub mod numbers;
 pub mod parts;
+pub mod point_nets;
 pub mod roundings;
 pub mod rows;
 pub mod scatters;
+pub mod splines;
 pub mod surfaces;
 pub mod sweeps;
 pub mod text;
 pub mod topology;
+pub mod topology_fields;
 pub mod transforms;
 pub mod vectors;
 pub mod walls;
 
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
+pub(crate) use crate::lang::eval::std::topology::curve_of;
 use crate::lang::values::types::Ty;
 use crate::lang::values::value::Value;
-
-pub(crate) use crate::lang::eval::std::topology::curve_of;
 
 /// A parameter of a function.
 #[derive(Debug)]
@@ -99,16 +103,20 @@ impl Builtin {
 /// All tables of functions.
 pub const BUILTINS: &[&[Builtin]] = &[
     numbers::BUILTINS,
+    elementary::BUILTINS,
     lists::BUILTINS,
     text::BUILTINS,
     vectors::BUILTINS,
     distances::BUILTINS,
     data::BUILTINS,
     curves::BUILTINS,
+    splines::BUILTINS,
     fits::BUILTINS,
     roundings::BUILTINS,
     network::BUILTINS,
+    curve_nets::BUILTINS,
     surfaces::BUILTINS,
+    point_nets::BUILTINS,
     sweeps::BUILTINS,
     nets::BUILTINS,
     transforms::BUILTINS,
@@ -130,7 +138,7 @@ pub const FIELDS: &[&[Builtin]] = &[
     data::FIELDS,
     network::FIELDS,
     mesh::FIELDS,
-    topology::FIELDS,
+    topology_fields::FIELDS,
     sweeps::FIELDS,
     joins::FIELDS,
     measures::FIELDS,
@@ -176,11 +184,11 @@ macro_rules! builtin_table {
         pub const $table: &[$crate::lang::eval::std::Builtin] = &[ $( $crate::lang::eval::std::Builtin {
             name: stringify!($name),
             docs: concat!($($doc, "\n"),*),
-            returns: <$ret as $crate::lang::values::types::IntoValue>::TY,
+            returns: <$ret as $crate::lang::values::conversions::IntoValue>::TY,
             params: &[ $( $crate::lang::eval::std::Param {
                 name: stringify!($p),
                 docs: concat!($($pdoc, "\n"),*),
-                ty: <$ty as $crate::lang::values::types::FromValue>::TY,
+                ty: <$ty as $crate::lang::values::conversions::FromValue>::TY,
                 default: $crate::optional_default!($($default)?),
             } ),* ],
             call: |cx, args| {
@@ -189,7 +197,7 @@ macro_rules! builtin_table {
                 $( let $p = $crate::lang::eval::std::take::<$ty>(&mut args)?; )*
                 let _ = args;
                 let run: fn(&mut $crate::lang::eval::context::Cx, $($ty),*) -> Result<$ret, $crate::lang::eval::halt::Halt> = $body;
-                run(cx, $($p),*).map($crate::lang::values::types::IntoValue::into_value)
+                run(cx, $($p),*).map($crate::lang::values::conversions::IntoValue::into_value)
             },
         } ),+ ];
     };
@@ -208,6 +216,6 @@ macro_rules! optional_default {
 }
 
 /// The next argument as its Rust type; `bind` has made sure that it fits.
-pub fn take<T: crate::lang::values::types::FromValue>(args: &mut impl Iterator<Item = Value>) -> Result<T, Halt> {
+pub fn take<T: crate::lang::values::conversions::FromValue>(args: &mut impl Iterator<Item = Value>) -> Result<T, Halt> {
     args.next().and_then(T::from_value).ok_or(Halt::Bug("an argument was not coerced to its type"))
 }

@@ -7,7 +7,7 @@ use crate::lang::eval::halt::Halt;
 use crate::lang::eval::std::curves::unit;
 use crate::lang::eval::std::kinds::{EndKind, SectionKind};
 use crate::lang::eval::std::surfaces::finished;
-use crate::lang::values::types::Length;
+use crate::lang::values::conversions::Length;
 use crate::network::Chain;
 use crate::network::net;
 use crate::surface::blended::coons::{self, Grid, Method, Settings};

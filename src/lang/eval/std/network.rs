@@ -7,7 +7,7 @@ use crate::base::tolerance::WHOLE_NUMBER;
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
 use crate::lang::eval::std::kinds::{CurveOrSurface, LinkOf, Meeting, NetworkOf, ThingsOrCurve};
-use crate::lang::values::types::{Length, Node, Point, Station};
+use crate::lang::values::conversions::{Length, Node, Point, Station};
 use crate::lang::values::value::Value;
 use crate::network::{Chain, LinkId};
 use crate::surface::Nearest;

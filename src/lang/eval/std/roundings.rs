@@ -3,7 +3,7 @@
 use crate::builtins;
 use crate::geometry::construct::fillet::{Treatment, treat};
 use crate::lang::eval::std::curves::{places, whole};
-use crate::lang::values::types::{Length, Point};
+use crate::lang::values::conversions::{Length, Point};
 use crate::network::Chain;
 
 builtins! {

@@ -2,7 +2,7 @@
 
 use crate::builtins;
 use crate::lang::eval::std::surfaces::finished;
-use crate::lang::values::types::Rest;
+use crate::lang::values::conversions::Rest;
 use crate::surface::{self, Surface};
 
 builtins! {

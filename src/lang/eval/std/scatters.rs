@@ -3,7 +3,7 @@
 use crate::builtins;
 use crate::lang::eval::std::curves::places;
 use crate::lang::eval::std::surfaces::finished;
-use crate::lang::values::types::{Direction, Point};
+use crate::lang::values::conversions::{Direction, Point};
 use crate::surface::{self, Surface};
 
 builtins! {

@@ -12,19 +12,16 @@ use crate::lang::eval::halt::Halt;
 use crate::lang::eval::std::curves::unit;
 use crate::lang::eval::std::kinds::{Cutter, Trimmed};
 use crate::lang::eval::std::transforms::axis_line;
-use crate::lang::values::types::{Angle, Axis, Direction, Length, Point, Rest};
+use crate::lang::values::conversions::{Angle, Axis, Direction, Point, Rest};
 use crate::lang::values::value::{Plane, Value};
 use crate::model::measure;
-use crate::network::{self, Chain, ChainFlow, FlowKind};
-use crate::surface::blended::coons::{self, Grid, Method, Settings};
+use crate::network::{self, Chain};
 use crate::surface::blended::plane_face;
 use crate::surface::core::plane;
-use crate::surface::faults::{LoopFault, SurfaceFault};
+use crate::surface::faults::SurfaceFault;
 use crate::surface::intersect::self_intersection::crossing;
-use crate::surface::points::control_net::{self, Net};
-use crate::surface::points::interpolate;
 use crate::surface::swept::{extrude, revolve};
-use crate::surface::{Domain, Reparam, Surface, Way, carried, ruled as surface_between};
+use crate::surface::{Domain, Surface, Way, carried, ruled as surface_between};
 
 /// Checks that (u, v) lies in the surface's domain; each with the name of its argument.
 pub(crate) fn checked_uv(surface: &Surface, u: (f64, &'static str), v: (f64, &'static str)) -> Result<(f64, f64), Halt> {
@@ -39,103 +36,6 @@ pub(crate) fn checked_uv(surface: &Surface, u: (f64, &'static str), v: (f64, &'s
         return Err(ValueFault::OutsideRange { argument: v.1, found, range }.into());
     }
     Ok((u.0, v.0))
-}
-
-crate::choices! {
-    /// How curves are matched between their meetings.
-    pub enum ReparamWord {
-        /// Smoothly, so that the surface is C1 across its curves.
-        Smooth = "smooth",
-        /// Piecewise linear, as first published; the surface is C0 across its curves.
-        Linear = "linear",
-    }
-}
-
-crate::choices! {
-    /// How neighbouring curves of a grid are blended.
-    pub enum BlendWord {
-        /// Linearly inside one loop, cubically where inner curves make several cells.
-        Auto = "auto",
-        /// Linearly between neighbours; across inner curves the surface has a kink.
-        Linear = "linear",
-        /// Cubically between neighbours, so that the surface is C1 across inner curves.
-        Cubic = "cubic",
-    }
-}
-
-/// Curves as a builtin gets them: those in a row, and those said to run along u and v.
-struct Curves {
-    row: Rest<Chain>,
-    u: Option<Vec<Chain>>,
-    v: Option<Vec<Chain>>,
-}
-
-impl Curves {
-    /// E663 for a curve that stands twice in one of the lists.
-    fn each_once(&self, tolerance: &Tolerance) -> Result<(), Halt> {
-        let lists = [("curves", Some(&self.row.0)), ("u", self.u.as_ref()), ("v", self.v.as_ref())];
-        for (argument, list) in lists {
-            let Some(list) = list else { continue };
-            if let Some(places) = network::given_twice(list, tolerance) {
-                return Err(LoopFault::Twice { of: list[places.1].origin(), argument, places, hole: None }.into());
-            }
-        }
-        Ok(())
-    }
-
-    /// All curves in order of writing, each once, and the places of those along u and v.
-    fn listed(self) -> (Vec<Chain>, Vec<usize>, Vec<usize>) {
-        let mut all = self.row.0;
-        let mut place = |chain: Chain| {
-            all.iter().position(|c| same(c, &chain)).unwrap_or_else(|| {
-                all.push(chain);
-                all.len() - 1
-            })
-        };
-        let along_u = self.u.unwrap_or_default().into_iter().map(&mut place).collect();
-        let along_v = self.v.unwrap_or_default().into_iter().map(&mut place).collect();
-        (all, along_u, along_v)
-    }
-}
-
-/// Whether two values are the same run of curves in the same direction.
-fn same(a: &Chain, b: &Chain) -> bool {
-    let run = |x: &network::Run, y: &network::Run| x.s0 == y.s0 && x.s1 == y.s1 && network::chain::same_curve(&x.curve, &y.curve);
-    a.runs().len() == b.runs().len() && a.runs().iter().zip(b.runs()).all(|(x, y)| run(x, y))
-}
-
-/// What decides a flow beside the curves.
-struct Said {
-    pole: Option<Point>,
-    closed: bool,
-    reparam: ReparamWord,
-    method: Method,
-}
-
-/// A surface over a grid of curves, its flow found.
-fn over_grid(cx: &mut Cx, curves: Curves, said: &Said) -> Result<Surface, Halt> {
-    let tolerance = cx.tolerance()?;
-    curves.each_once(&tolerance)?;
-    let (chains, along_u, along_v) = curves.listed();
-    let options = ChainFlow { along_u, along_v, pole: said.pole.map(|p| p.0), closed: said.closed };
-    let (flow, nodes) = network::of_chains(&chains, &options, &tolerance)?;
-    let blend = match said.method {
-        Method::Linear => Some("linear"),
-        Method::Cubic => Some("cubic"),
-        Method::Coons | Method::Lagrange | Method::Gordon => None,
-    };
-    if let Some(word) = blend.filter(|_| flow.kind == FlowKind::UniformTrilateral) {
-        let range = "auto where three curves have no pole: they are blended in one way".to_owned();
-        return Err(ValueFault::OutsideRange { argument: "blend", found: word.to_owned(), range }.into());
-    }
-    let poles = (flow.poles.0.map(|n| nodes[n]), flow.poles.1.map(|n| nodes[n]));
-    let reparam = match said.reparam {
-        ReparamWord::Smooth => Reparam::Smooth,
-        ReparamWord::Linear => Reparam::Linear,
-    };
-    let settings = Settings { method: said.method, reparam, origin: cx.origin() };
-    let (surface, notes) = coons::build(&Grid { chains: &chains, flow: &flow, poles }, &settings, &tolerance)?;
-    finished(cx, surface, &notes)
 }
 
 /// Says the notes of a surface and what a look at it finds.
@@ -178,72 +78,6 @@ const TRIM_EXAMPLE: &str = "trim(s, by: [c], keep: P)";
 const PLANE_EXAMPLE: &str = "plane(a, b, c), or plane(at: P, normal: (0, 0, 1))";
 
 builtins! {
-    /// Coons surface through a closed loop or a grid of curves.
-    ///
-    /// Curves come in any order and direction: what they span is found from the nodes they share. The surface
-    /// contains every curve. The first curve written runs along u. Inside one loop curves are blended linearly (four
-    /// straight lines give the hyperbolic paraboloid); where inner curves make several cells the blend is cubic, and
-    /// the surface is C1 across them.
-    /// ```loft
-    /// curve south = line((0, 0, 0), (4m, 0, 0))
-    /// curve north = arc((0, 3m, 0), (4m, 3m, 0), through: (2m, 3m, 1m))
-    /// curve west = line(south.start, north.start)
-    /// curve east = line(south.end, north.end)
-    /// surface roof = coons(south, east, north, west)
-    /// ```
-    fn coons(
-        /// Boundary curves and inner curves.
-        curves: Rest<Chain>,
-        /// Those that run along u, where the curves alone do not decide.
-        u: Option<Vec<Chain>>,
-        /// Those that run along v.
-        v: Option<Vec<Chain>>,
-        /// The point to which a side shrinks, where the curves alone do not decide.
-        pole: Option<Point>,
-        /// Whether the surface closes in u, where the curves alone do not decide.
-        closed: bool = "false",
-        /// How curves are matched between their meetings.
-        reparam: ReparamWord = "smooth",
-        /// How neighbouring curves are blended: `auto` is `linear` for one cell and `cubic` for several; three curves without a
-        /// pole are blended in one way, `auto`.
-        blend: BlendWord = "auto",
-    ) -> Surface = |cx, row, u, v, pole, closed, reparam, blend| {
-        let method = match blend {
-            BlendWord::Auto => Method::Coons,
-            BlendWord::Linear => Method::Linear,
-            BlendWord::Cubic => Method::Cubic,
-        };
-        over_grid(cx, Curves { row, u, v }, &Said { pole, closed, reparam, method })
-    };
-
-    /// Transfinite surface through a grid of curves: one blend over the whole grid.
-    ///
-    /// With more than three curves one way it may oscillate between them; `coons` does not.
-    /// ```loft
-    /// curve south = line((0, 0, 0), (4m, 0, 0))
-    /// curve north = line((0, 3m, 1m), (4m, 3m, 0))
-    /// curve west = line(south.start, north.start)
-    /// curve middle = line(south.at(50%), north.at(50%))
-    /// curve east = line(south.end, north.end)
-    /// surface roof = transfinite(u: [south, north], v: [west, middle, east])
-    /// ```
-    fn transfinite(
-        /// Boundary curves and inner curves.
-        curves: Rest<Chain>,
-        /// Those that run along u, where the curves alone do not decide.
-        u: Option<Vec<Chain>>,
-        /// Those that run along v.
-        v: Option<Vec<Chain>>,
-        /// The point to which a side shrinks, where the curves alone do not decide.
-        pole: Option<Point>,
-        /// Whether the surface closes in u, where the curves alone do not decide.
-        closed: bool = "false",
-        /// How curves are matched between their meetings.
-        reparam: ReparamWord = "smooth",
-    ) -> Surface = |cx, row, u, v, pole, closed, reparam| {
-        over_grid(cx, Curves { row, u, v }, &Said { pole, closed, reparam, method: Method::Lagrange })
-    };
-
     /// Surface of straight lines between two curves.
     ///
     /// The second curve is read backwards where that keeps the lines from crossing.
@@ -450,105 +284,5 @@ builtins! {
         let about = about.map(|p| p.0).or(start).unwrap_or(DVec3::ZERO);
         let surface = revolve::revolve(&profile, &revolve::Axis { about, direction }, angle.0, cx.origin(), &tolerance)?;
         finished(cx, surface, &[])
-    };
-
-    /// Bézier surface of a net of control points.
-    ///
-    /// ```loft
-    /// surface sail = bezier_surface([[(0, 0, 0), (1m, 0, 1m), (2m, 0, 0)], [(0, 2m, 0), (1m, 2m, 0), (2m, 2m, 1m)]])
-    /// ```
-    fn bezier_surface(
-        /// Rows of control points along u, one row per v, all as long.
-        net: Vec<Vec<Point>>,
-        /// A weight for each point, in the same rows.
-        weights: Option<Vec<Vec<f64>>>,
-    ) -> Surface = |cx, net, weights| {
-        let net = rows(net);
-        cx.seen(net.iter().flatten().copied());
-        let tolerance = cx.tolerance()?;
-        let surface = control_net::bezier(&Net { rows: &net, weights: weights.as_deref() }, cx.origin(), &tolerance)?;
-        finished(cx, surface, &[])
-    };
-
-    /// Polynomial patch: coordinates are sums of coefficients times powers of u, v.
-    ///
-    /// The coefficient in row i, place j belongs to u^i v^j. The patch is kept as a Bézier surface, exactly but for rounding, and
-    /// may be trimmed by curves in u and v. Records of patches: `[for p in part.patches: polynomial(x: p.x, y: p.y, z: p.z)]`.
-    /// ```loft
-    /// surface saddle = polynomial(
-    ///   x: [[0, 0, 0], [2, 0, 0]],
-    ///   y: [[0, 3, 0], [0, 0, 0]],
-    ///   z: [[0, 0, 1], [0, -2, 0]]
-    /// )
-    /// let p = saddle.at(0.5, 1) // => (1mm, 3mm, 0mm)
-    /// ```
-    fn polynomial(
-        /// Coefficients of x: a row for each power of u, in it one for each power of v.
-        x: Vec<Vec<Length>>,
-        /// Those of y, in as many rows.
-        y: Vec<Vec<Length>>,
-        /// Those of z.
-        z: Vec<Vec<Length>>,
-    ) -> Surface = |cx, x, y, z| {
-        let shape = |rows: &[Vec<Length>]| rows.iter().map(Vec::len).collect::<Vec<_>>();
-        for (argument, other) in [("y", &y), ("z", &z)] {
-            if shape(other) != shape(&x) {
-                let (found, range) = (format!("rows of {:?}", shape(other)), format!("rows of {:?} as in `x`", shape(&x)));
-                return Err(ValueFault::OutsideRange { argument, found, range }.into());
-            }
-        }
-        let row = |i: usize| (0..x[i].len()).map(|j| DVec3::new(x[i][j].0, y[i][j].0, z[i][j].0)).collect();
-        let coefficients: Vec<Vec<DVec3>> = (0..x.len()).map(row).collect();
-        let net = crate::surface::polynomial_net(&coefficients)?;
-        cx.seen(net.iter().flatten().copied());
-        let tolerance = cx.tolerance()?;
-        let surface = control_net::bezier(&Net { rows: &net, weights: None }, cx.origin(), &tolerance)?;
-        finished(cx, surface, &[])
-    };
-
-    /// Rational B-spline surface of a net of control points.
-    ///
-    /// ```loft
-    /// let net = [for j in 0..4: [for i in 0..5: (i * 1m, j * 1m, (i + j) * 100mm)]]
-    /// surface panel = nurbs_surface(net, degree_u: 3, degree_v: 2)
-    /// ```
-    fn nurbs_surface(
-        /// Rows of control points along u, one row per v, all as long.
-        net: Vec<Vec<Point>>,
-        /// Degree along u.
-        degree_u: usize = "3",
-        /// Degree along v.
-        degree_v: usize = "3",
-        /// Knots along u; clamped and uniform when left out.
-        knots_u: Option<Vec<f64>>,
-        /// Knots along v.
-        knots_v: Option<Vec<f64>>,
-        /// A weight for each point, in the same rows.
-        weights: Option<Vec<Vec<f64>>>,
-    ) -> Surface = |cx, net, degree_u, degree_v, knots_u, knots_v, weights| {
-        let net = rows(net);
-        cx.seen(net.iter().flatten().copied());
-        let tolerance = cx.tolerance()?;
-        let knots = (knots_u.as_deref(), knots_v.as_deref());
-        let net = Net { rows: &net, weights: weights.as_deref() };
-        let surface = control_net::nurbs(&net, (degree_u, degree_v), knots, cx.origin(), &tolerance)?;
-        finished(cx, surface, &[])
-    };
-
-    /// Smooth surface through a grid of points.
-    ///
-    /// Bicubic, twice continuously differentiable, natural at its border.
-    /// ```loft
-    /// surface ground = grid([for j in 0..4: [for i in 0..5: (i * 1m, j * 1m, sin(i * 60deg) * 200mm)]])
-    /// ```
-    fn grid(
-        /// Rows of points along u, one row per v, all as long.
-        points: Vec<Vec<Point>>,
-    ) -> Surface = |cx, points| {
-        let points = rows(points);
-        cx.seen(points.iter().flatten().copied());
-        let tolerance = cx.tolerance()?;
-        let (surface, notes) = interpolate::grid(&points, cx.origin(), &tolerance)?;
-        finished(cx, surface, &notes)
     };
 }

@@ -5,7 +5,7 @@ use crate::base::fault::ValueFault;
 use crate::builtins;
 use crate::lang::eval::std::surfaces::finished;
 use crate::lang::eval::std::transforms::axis_line;
-use crate::lang::values::types::{Angle, Axis, Length, Point};
+use crate::lang::values::conversions::{Angle, Axis, Length, Point};
 use crate::lang::values::value::Value;
 use crate::network::Chain;
 use crate::surface::Surface;

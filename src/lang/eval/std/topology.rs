@@ -1,6 +1,5 @@
 //! Patches, edges, vertices and loops of surfaces and shells, and places on surfaces.
 
-use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -8,22 +7,22 @@ use glam::DVec3;
 use crate::base::bbox::Box3;
 use crate::base::fault::ValueFault;
 use crate::base::origin::Origin;
+use crate::builtins;
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
 use crate::lang::eval::scene::Scene;
 use crate::lang::eval::std::choosing;
-use crate::lang::eval::std::kinds::{Carrier, EdgeKey, EdgeOf, Edged, Faces, PatchOf, VertexOf};
+use crate::lang::eval::std::kinds::{Carrier, EdgeKey, EdgeOf, Edged, Faces, VertexOf};
 use crate::lang::eval::std::surfaces::checked_uv;
-use crate::lang::values::types::{Angle, Direction, Length, Point};
-use crate::lang::values::value::{Home, ShellValue, Value};
+use crate::lang::values::conversions::{Angle, Direction, Length};
+use crate::lang::values::value::{Home, Value};
 use crate::model::contact::Turn;
 use crate::model::{EdgeId, Model, PatchId, SharedEdges, SurfaceId};
 use crate::network::Chain;
 use crate::surface::{IsoLine, Surface, SurfaceKind};
-use crate::{builtins, fields};
 
 /// The patches of a declared surface in the model of the script.
-fn patches(cx: &mut Cx, surfaces: &[Surface]) -> Result<(Home, Arc<Model>, Vec<PatchId>), Halt> {
+pub(crate) fn patches(cx: &mut Cx, surfaces: &[Surface]) -> Result<(Home, Arc<Model>, Vec<PatchId>), Halt> {
     let module = cx.module();
     let (scene, home) = Scene::at_home(cx, module, surfaces)?;
     let places = scene.find_all(surfaces)?;
@@ -32,30 +31,30 @@ fn patches(cx: &mut Cx, surfaces: &[Surface]) -> Result<(Home, Arc<Model>, Vec<P
 }
 
 /// An edge of the model as a value.
-fn whole(home: &Home, model: &Model, edge: EdgeId) -> EdgeOf {
+pub(crate) fn whole(home: &Home, model: &Model, edge: EdgeId) -> EdgeOf {
     EdgeOf(home.clone(), Arc::new(model.whole_edge(edge)))
 }
 
 /// Edges of some surfaces, along the border of each patch.
-fn edges(cx: &mut Cx, surfaces: &[Surface]) -> Result<Vec<EdgeOf>, Halt> {
+pub(crate) fn edges(cx: &mut Cx, surfaces: &[Surface]) -> Result<Vec<EdgeOf>, Halt> {
     let (home, model, patches) = patches(cx, surfaces)?;
     Ok(model.edges_along(&patches).into_iter().map(|edge| whole(&home, &model, edge)).collect())
 }
 
-fn vertices(cx: &mut Cx, surfaces: &[Surface]) -> Result<Vec<VertexOf>, Halt> {
+pub(crate) fn vertices(cx: &mut Cx, surfaces: &[Surface]) -> Result<Vec<VertexOf>, Halt> {
     let (home, model, patches) = patches(cx, surfaces)?;
     Ok(model.vertices_of(&patches).into_iter().map(|vertex| VertexOf(home.clone(), vertex)).collect())
 }
 
 /// Edges of each patch's loop in order.
-fn loops(cx: &mut Cx, surfaces: &[Surface]) -> Result<Vec<Vec<EdgeOf>>, Halt> {
+pub(crate) fn loops(cx: &mut Cx, surfaces: &[Surface]) -> Result<Vec<Vec<EdgeOf>>, Halt> {
     let (home, model, patches) = patches(cx, surfaces)?;
     let of_patch = |patch: &PatchId| model.border_of(*patch).into_iter().map(|(e, _)| whole(&home, &model, e)).collect();
     Ok(patches.iter().map(of_patch).collect())
 }
 
 /// The edges of a shell, as values in the order of its skin, and the skin.
-fn skin(cx: &mut Cx, faces: &Faces) -> Result<(Vec<EdgeOf>, SharedEdges), Halt> {
+pub(crate) fn skin(cx: &mut Cx, faces: &Faces) -> Result<(Vec<EdgeOf>, SharedEdges), Halt> {
     let (surfaces, stated) = (faces.surfaces(), faces.snap());
     let (home, model, _) = patches(cx, &surfaces)?;
     let (tolerance, network) = (cx.tolerance()?, cx.network_of(&home)?);
@@ -67,7 +66,7 @@ fn skin(cx: &mut Cx, faces: &Faces) -> Result<(Vec<EdgeOf>, SharedEdges), Halt> 
 }
 
 /// Some edges of a skin by their places.
-fn picked(all: &[EdgeOf], places: &[usize]) -> Vec<EdgeOf> {
+pub(crate) fn picked(all: &[EdgeOf], places: &[usize]) -> Vec<EdgeOf> {
     places.iter().map(|k| all[*k].clone()).collect()
 }
 
@@ -103,7 +102,7 @@ fn corners(cx: &mut Cx, value: &Value) -> Result<Box3, Halt> {
 }
 
 /// The geometry of an edge at the middle of its length.
-fn middle(cx: &mut Cx, edge: &EdgeOf) -> Result<DVec3, Halt> {
+pub(crate) fn middle(cx: &mut Cx, edge: &EdgeOf) -> Result<DVec3, Halt> {
     let (model, network) = (cx.model(&edge.0)?, cx.network_of(&edge.0)?);
     let track = model.shared_track(&edge.1, &network).ok_or(Halt::Bug("an edge without geometry"))?;
     Ok(track.point(0.5 * track.length()))
@@ -336,84 +335,4 @@ builtins! {
         let (u, v) = checked_uv(&of, (u, "u"), (v, "v"))?;
         Ok(Direction(of.normal(u, v)))
     };
-}
-
-fields! {
-    /// The patches of a surface: its smooth pieces.
-    fn patches(of: Surface) -> Vec<PatchOf> = |cx, of| {
-        let (home, _, patches) = patches(cx, &[of])?;
-        Ok(patches.into_iter().map(|p| PatchOf(home.clone(), p)).collect())
-    };
-    /// The edges of a surface, patch by patch along the border of each.
-    fn edges(of: Surface) -> Vec<EdgeOf> = |cx, of| edges(cx, &[of]);
-    /// The vertices of a surface: the corners of its patches.
-    fn vertices(of: Surface) -> Vec<VertexOf> = |cx, of| vertices(cx, &[of]);
-    /// For each patch of a surface the edges around it, in order.
-    fn loops(of: Surface) -> Vec<Vec<EdgeOf>> = |cx, of| loops(cx, &[of]);
-    /// The faces of a shell: the patches of its surfaces.
-    fn faces(of: Arc<ShellValue>) -> Vec<PatchOf> = |cx, of| {
-        let (home, _, patches) = patches(cx, &of.surfaces)?;
-        Ok(patches.into_iter().map(|p| PatchOf(home.clone(), p)).collect())
-    };
-    /// The edges of a shell, as they are after its faces were glued.
-    ///
-    /// They come by the faces of the shell as listed, then along the border of each face; where a long border meets several
-    /// shorter ones, each of these is an edge. `.faces` are the faces of the shell on it, one at a free edge.
-    fn edges(of: Arc<ShellValue>) -> Vec<EdgeOf> = |cx, of| Ok(skin(cx, &Faces::of_shell(of))?.0);
-    /// The vertices of a shell: the ends of its edges.
-    fn vertices(of: Arc<ShellValue>) -> Vec<VertexOf> = |cx, of| {
-        let (edges, mut seen) = (skin(cx, &Faces::of_shell(of))?.0, BTreeSet::new());
-        let ends = edges.iter().flat_map(|edge| [edge.1.ends.0, edge.1.ends.1].map(|vertex| VertexOf(edge.0.clone(), vertex)));
-        Ok(ends.filter(|vertex| seen.insert(vertex.1)).collect())
-    };
-    /// For each face of a shell the edges around it, in order.
-    fn loops(of: Arc<ShellValue>) -> Vec<Vec<EdgeOf>> = |cx, of| {
-        let (all, skin) = skin(cx, &Faces::of_shell(of))?;
-        Ok(skin.borders.iter().map(|(_, around)| picked(&all, around)).collect())
-    };
-    /// The free edges of a surface, a shell or a list of them, loop by loop.
-    ///
-    /// A tube has two rims of one edge each, a closed shell none. The first loop begins with the first free edge (`.edges`
-    /// says in which order they come), the next one with the first that is left.
-    fn rims(of: Edged) -> Vec<Vec<EdgeOf>> = |cx, Edged(of)| {
-        let (all, skin) = skin(cx, &of)?;
-        Ok(skin.rims().iter().map(|around| picked(&all, around)).collect())
-    };
-    /// Whether no edge of a shell is free.
-    fn closed(of: Arc<ShellValue>) -> bool = |cx, of| {
-        let module = cx.module();
-        Ok(cx.glued(module, &of)?.shell.closed)
-    };
-    /// The edges around a patch, in order.
-    fn edges(of: PatchOf) -> Vec<EdgeOf> = |cx, of| {
-        let model = cx.model(&of.0)?;
-        Ok(model.border_of(of.1).into_iter().map(|(e, _)| whole(&of.0, &model, e)).collect())
-    };
-    /// The corners of a patch.
-    fn vertices(of: PatchOf) -> Vec<VertexOf> = |cx, of| {
-        Ok(cx.model(&of.0)?.vertices_of(&[of.1]).into_iter().map(|v| VertexOf(of.0.clone(), v)).collect())
-    };
-    /// The surface a patch lies on.
-    fn surface(of: PatchOf) -> Surface = |cx, of| {
-        let model = cx.model(&of.0)?;
-        Ok(model.surfaces[model.patches[of.1.index()].surface.index()].surface.clone())
-    };
-    /// Arc length of an edge.
-    fn length(of: EdgeOf) -> Length = |_, of| Ok(Length(of.1.length()));
-    /// The patches on both sides of an edge.
-    fn faces(of: EdgeOf) -> Vec<PatchOf> = |_, of| Ok(of.1.faces.iter().map(|p| PatchOf(of.0.clone(), *p)).collect());
-    /// The two ends of an edge.
-    fn vertices(of: EdgeOf) -> Vec<VertexOf> = |_, of| Ok([of.1.ends.0, of.1.ends.1].map(|v| VertexOf(of.0.clone(), v)).to_vec());
-    /// The point halfway along an edge.
-    fn mid(of: EdgeOf) -> Point = |cx, of| Ok(Point(middle(cx, &of)?));
-    /// The curve that an edge lies on.
-    fn curve(of: EdgeOf) -> Chain = |cx, of| curve_of(cx, of);
-    /// The edges that end in a vertex.
-    fn edges(of: VertexOf) -> Vec<EdgeOf> = |cx, of| {
-        let model = cx.model(&of.0)?;
-        let ends = |e: &usize| model.edges[*e].vertices.0 == of.1 || model.edges[*e].vertices.1 == of.1;
-        Ok((0..model.edges.len()).filter(ends).map(|e| whole(&of.0, &model, EdgeId::at(e))).collect())
-    };
-    /// Where a vertex is.
-    fn point(of: VertexOf) -> Value = |cx, of| Ok(Value::point(cx.model(&of.0)?.vertices[of.1.index()].point));
 }

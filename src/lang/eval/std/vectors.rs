@@ -3,7 +3,8 @@
 use crate::base::fault::ValueFault;
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
-use crate::lang::values::types::{Vector, dim_words};
+use crate::lang::values::conversions::Vector;
+use crate::lang::values::types::dim_words;
 use crate::lang::values::value::{Dim, Quantity, Value};
 use crate::{builtins, fields};
 

@@ -5,7 +5,7 @@ use crate::base::limits::WORK_OF_A_SURFACE;
 use crate::base::work;
 use crate::lang::eval::std::kinds::SurfaceOrShell;
 use crate::lang::eval::std::surfaces::tell_crossing;
-use crate::lang::values::types::Length;
+use crate::lang::values::conversions::Length;
 use crate::model::measure::points_inwards;
 use crate::surface::Surface;
 use crate::surface::offset::thicken::{thicken, thicken_all, without_creases};

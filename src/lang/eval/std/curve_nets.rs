@@ -1,0 +1,178 @@
+//! Surfaces over nets of curves: Coons and transfinite.
+
+use crate::base::fault::ValueFault;
+use crate::base::tolerance::Tolerance;
+use crate::builtins;
+use crate::lang::eval::context::Cx;
+use crate::lang::eval::halt::Halt;
+use crate::lang::eval::std::surfaces::finished;
+use crate::lang::values::conversions::{Point, Rest};
+use crate::network::{self, Chain, ChainFlow, FlowKind};
+use crate::surface::blended::coons::{self, Grid, Method, Settings};
+use crate::surface::faults::LoopFault;
+use crate::surface::{Reparam, Surface};
+
+crate::choices! {
+    /// How curves are matched between their meetings.
+    pub enum ReparamWord {
+        /// Smoothly, so that the surface is C1 across its curves.
+        Smooth = "smooth",
+        /// Piecewise linear, as first published; the surface is C0 across its curves.
+        Linear = "linear",
+    }
+}
+
+crate::choices! {
+    /// How neighbouring curves of a grid are blended.
+    pub enum BlendWord {
+        /// Linearly inside one loop, cubically where inner curves make several cells.
+        Auto = "auto",
+        /// Linearly between neighbours; across inner curves the surface has a kink.
+        Linear = "linear",
+        /// Cubically between neighbours, so that the surface is C1 across inner curves.
+        Cubic = "cubic",
+    }
+}
+
+/// Curves as a builtin gets them: those in a row, and those said to run along u and v.
+struct Curves {
+    row: Rest<Chain>,
+    u: Option<Vec<Chain>>,
+    v: Option<Vec<Chain>>,
+}
+
+impl Curves {
+    /// E663 for a curve that stands twice in one of the lists.
+    fn each_once(&self, tolerance: &Tolerance) -> Result<(), Halt> {
+        let lists = [("curves", Some(&self.row.0)), ("u", self.u.as_ref()), ("v", self.v.as_ref())];
+        for (argument, list) in lists {
+            let Some(list) = list else { continue };
+            if let Some(places) = network::given_twice(list, tolerance) {
+                return Err(LoopFault::Twice { of: list[places.1].origin(), argument, places, hole: None }.into());
+            }
+        }
+        Ok(())
+    }
+
+    /// All curves in order of writing, each once, and the places of those along u and v.
+    fn listed(self) -> (Vec<Chain>, Vec<usize>, Vec<usize>) {
+        let mut all = self.row.0;
+        let mut place = |chain: Chain| {
+            all.iter().position(|c| same(c, &chain)).unwrap_or_else(|| {
+                all.push(chain);
+                all.len() - 1
+            })
+        };
+        let along_u = self.u.unwrap_or_default().into_iter().map(&mut place).collect();
+        let along_v = self.v.unwrap_or_default().into_iter().map(&mut place).collect();
+        (all, along_u, along_v)
+    }
+}
+
+/// Whether two values are the same run of curves in the same direction.
+fn same(a: &Chain, b: &Chain) -> bool {
+    let run = |x: &network::Run, y: &network::Run| x.s0 == y.s0 && x.s1 == y.s1 && network::chain::same_curve(&x.curve, &y.curve);
+    a.runs().len() == b.runs().len() && a.runs().iter().zip(b.runs()).all(|(x, y)| run(x, y))
+}
+
+/// What decides a flow beside the curves.
+struct Said {
+    pole: Option<Point>,
+    closed: bool,
+    reparam: ReparamWord,
+    method: Method,
+}
+
+/// A surface over a grid of curves, its flow found.
+fn over_grid(cx: &mut Cx, curves: Curves, said: &Said) -> Result<Surface, Halt> {
+    let tolerance = cx.tolerance()?;
+    curves.each_once(&tolerance)?;
+    let (chains, along_u, along_v) = curves.listed();
+    let options = ChainFlow { along_u, along_v, pole: said.pole.map(|p| p.0), closed: said.closed };
+    let (flow, nodes) = network::of_chains(&chains, &options, &tolerance)?;
+    let blend = match said.method {
+        Method::Linear => Some("linear"),
+        Method::Cubic => Some("cubic"),
+        Method::Coons | Method::Lagrange | Method::Gordon => None,
+    };
+    if let Some(word) = blend.filter(|_| flow.kind == FlowKind::UniformTrilateral) {
+        let range = "auto where three curves have no pole: they are blended in one way".to_owned();
+        return Err(ValueFault::OutsideRange { argument: "blend", found: word.to_owned(), range }.into());
+    }
+    let poles = (flow.poles.0.map(|n| nodes[n]), flow.poles.1.map(|n| nodes[n]));
+    let reparam = match said.reparam {
+        ReparamWord::Smooth => Reparam::Smooth,
+        ReparamWord::Linear => Reparam::Linear,
+    };
+    let settings = Settings { method: said.method, reparam, origin: cx.origin() };
+    let (surface, notes) = coons::build(&Grid { chains: &chains, flow: &flow, poles }, &settings, &tolerance)?;
+    finished(cx, surface, &notes)
+}
+
+builtins! {
+    /// Coons surface through a closed loop or a grid of curves.
+    ///
+    /// Curves come in any order and direction: what they span is found from the nodes they share. The surface
+    /// contains every curve. The first curve written runs along u. Inside one loop curves are blended linearly (four
+    /// straight lines give the hyperbolic paraboloid); where inner curves make several cells the blend is cubic, and
+    /// the surface is C1 across them.
+    /// ```loft
+    /// curve south = line((0, 0, 0), (4m, 0, 0))
+    /// curve north = arc((0, 3m, 0), (4m, 3m, 0), through: (2m, 3m, 1m))
+    /// curve west = line(south.start, north.start)
+    /// curve east = line(south.end, north.end)
+    /// surface roof = coons(south, east, north, west)
+    /// ```
+    fn coons(
+        /// Boundary curves and inner curves.
+        curves: Rest<Chain>,
+        /// Those that run along u, where the curves alone do not decide.
+        u: Option<Vec<Chain>>,
+        /// Those that run along v.
+        v: Option<Vec<Chain>>,
+        /// The point to which a side shrinks, where the curves alone do not decide.
+        pole: Option<Point>,
+        /// Whether the surface closes in u, where the curves alone do not decide.
+        closed: bool = "false",
+        /// How curves are matched between their meetings.
+        reparam: ReparamWord = "smooth",
+        /// How neighbouring curves are blended: `auto` is `linear` for one cell and `cubic` for several; three curves without a
+        /// pole are blended in one way, `auto`.
+        blend: BlendWord = "auto",
+    ) -> Surface = |cx, row, u, v, pole, closed, reparam, blend| {
+        let method = match blend {
+            BlendWord::Auto => Method::Coons,
+            BlendWord::Linear => Method::Linear,
+            BlendWord::Cubic => Method::Cubic,
+        };
+        over_grid(cx, Curves { row, u, v }, &Said { pole, closed, reparam, method })
+    };
+
+    /// Transfinite surface through a grid of curves: one blend over the whole grid.
+    ///
+    /// With more than three curves one way it may oscillate between them; `coons` does not.
+    /// ```loft
+    /// curve south = line((0, 0, 0), (4m, 0, 0))
+    /// curve north = line((0, 3m, 1m), (4m, 3m, 0))
+    /// curve west = line(south.start, north.start)
+    /// curve middle = line(south.at(50%), north.at(50%))
+    /// curve east = line(south.end, north.end)
+    /// surface roof = transfinite(u: [south, north], v: [west, middle, east])
+    /// ```
+    fn transfinite(
+        /// Boundary curves and inner curves.
+        curves: Rest<Chain>,
+        /// Those that run along u, where the curves alone do not decide.
+        u: Option<Vec<Chain>>,
+        /// Those that run along v.
+        v: Option<Vec<Chain>>,
+        /// The point to which a side shrinks, where the curves alone do not decide.
+        pole: Option<Point>,
+        /// Whether the surface closes in u, where the curves alone do not decide.
+        closed: bool = "false",
+        /// How curves are matched between their meetings.
+        reparam: ReparamWord = "smooth",
+    ) -> Surface = |cx, row, u, v, pole, closed, reparam| {
+        over_grid(cx, Curves { row, u, v }, &Said { pole, closed, reparam, method: Method::Lagrange })
+    };
+}
