@@ -77,7 +77,7 @@ impl Cx<'_> {
         for setting in settings {
             let key = self.program.names.text(setting.key).to_owned();
             let Some(known) = table.iter().find(|s| s.key == key) else {
-                gather.take::<()>(Err(self.no_setting(code, (word, table), &key, setting.key_span)));
+                gather.take::<()>(Err(self.no_setting(code, word, table, &key, setting.key_span)));
                 continue;
             };
             if let Some(before) = settings.iter().take_while(|s| s.key_span != setting.key_span).find(|s| s.key == setting.key) {
@@ -120,7 +120,7 @@ impl Cx<'_> {
     }
 
     #[cold]
-    fn no_setting(&mut self, code: Code<'_>, (word, table): (&str, &[Setting]), key: &str, span: Span) -> Halt {
+    fn no_setting(&mut self, code: Code<'_>, word: &str, table: &[Setting], key: &str, span: Span) -> Halt {
         let near = meant(key, table.iter().map(|s| s.key)).map(str::to_owned);
         let text = format!("{} has no setting `{key}`", if word == "on" { "`on`".to_owned() } else { format!("{} {word}", article(word)) });
         let label = near.as_ref().map_or_else(|| "no such setting".to_owned(), |near| format!("did you mean `{near}`?"));

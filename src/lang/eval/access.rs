@@ -18,7 +18,7 @@ use crate::lang::words::names::Name;
 
 impl Cx<'_> {
     /// `of.name`: a record's field, a name of a module, a field of the kind, then a function of one value.
-    pub(crate) fn field(&mut self, code: Code<'_>, id: ExprId, of: ExprId, (name, span): (Name, Span)) -> Result<Value, Halt> {
+    pub(crate) fn field(&mut self, code: Code<'_>, id: ExprId, of: ExprId, name: Name, span: Span) -> Result<Value, Halt> {
         let value = self.eval(code, of)?;
         match &value {
             Value::Record(r) => {
@@ -26,7 +26,7 @@ impl Cx<'_> {
                     return Ok(value.clone());
                 }
             }
-            Value::Module(module) => return self.member_of(code, id, *module, (name, span)),
+            Value::Module(module) => return self.member_of(code, id, *module, name, span),
             _ => {}
         }
         let (function, has_fields) = self.word(name);
@@ -45,7 +45,7 @@ impl Cx<'_> {
     }
 
     /// `ribs.arch`: what a module declares.
-    fn member_of(&mut self, code: Code<'_>, id: ExprId, module: ModuleId, (name, span): (Name, Span)) -> Result<Value, Halt> {
+    fn member_of(&mut self, code: Code<'_>, id: ExprId, module: ModuleId, name: Name, span: Span) -> Result<Value, Halt> {
         match self.machine.at(module).find(name) {
             Some(declaration) if self.machine.at(module).script.declarations[declaration as usize].keyword != Keyword::Fn => {
                 self.machine.site.expr = id;

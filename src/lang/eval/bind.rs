@@ -55,7 +55,7 @@ impl Cx<'_> {
             let result = match (place, arg.name) {
                 (None, Some((name, span))) => {
                     let text = self.program.names.text(name).to_owned();
-                    Err(self.no_argument(code, signature, &text, (span, arg.value)))
+                    Err(self.no_argument(code, signature, &text, span, arg.value))
                 }
                 (None, None) => Err(self.too_many(code, signature, arg.value)),
                 (Some(k), _) => {
@@ -104,7 +104,7 @@ impl Cx<'_> {
             };
             given |= 1;
             match param.ty {
-                Ty::Rest(inner) => rest.extend(gather.take(self.fit_rest(code, of, value, (param.ty, *inner), &positional(builtin, 0)))),
+                Ty::Rest(inner) => rest.extend(gather.take(self.fit_rest(code, of, value, param.ty, *inner, &positional(builtin, 0)))),
                 ty => values[0] = gather.take(self.fit_expr(code, of, value, ty, &positional(builtin, 0))).unwrap_or_default(),
             }
         }
@@ -115,7 +115,7 @@ impl Cx<'_> {
             match param.ty {
                 Ty::Rest(inner) => {
                     let value = self.eval(code, arg.value);
-                    let value = value.and_then(|v| self.fit_rest(code, arg.value, v, (param.ty, *inner), &subject()));
+                    let value = value.and_then(|v| self.fit_rest(code, arg.value, v, param.ty, *inner, &subject()));
                     rest.extend(gather.take(value));
                 }
                 ty => values[k] = gather.take(self.eval_param(code, arg.value, ty, &subject)).unwrap_or_default(),
@@ -159,7 +159,7 @@ impl Cx<'_> {
     }
 
     /// One argument among the rest: a thing, or lists of things.
-    fn fit_rest(&mut self, code: Code<'_>, id: ExprId, value: Value, (list, of): (Ty, Ty), subject: &str) -> Result<Value, Halt> {
+    fn fit_rest(&mut self, code: Code<'_>, id: ExprId, value: Value, list: Ty, of: Ty, subject: &str) -> Result<Value, Halt> {
         let value = if let Value::Table(t) = value { Value::List(t.rows.clone()) } else { value };
         let ty = if matches!(value, Value::List(_) | Value::Range(..)) { list } else { of };
         self.fit_expr(code, id, value, ty, subject)
@@ -221,7 +221,7 @@ impl Cx<'_> {
     }
 
     #[cold]
-    fn no_argument(&mut self, code: Code<'_>, signature: &Signature<'_>, name: &str, (span, value): (Span, ExprId)) -> Halt {
+    fn no_argument(&mut self, code: Code<'_>, signature: &Signature<'_>, name: &str, span: Span, value: ExprId) -> Halt {
         let near = meant(name, signature.params.iter().copied()).map(str::to_owned);
         let text = format!("`{}` has no argument `{name}`", signature.name);
         if matches!(name, "d" | "diameter") && signature.params.contains(&"radius") {

@@ -49,13 +49,14 @@ impl Cx<'_> {
         &mut self,
         code: Code<'_>,
         id: ExprId,
-        (name, name_span): (Name, Span),
+        name: Name,
+        name_span: Span,
         of: Option<ExprId>,
         args: &[Arg],
     ) -> Result<Value, Halt> {
         let first = match of {
             Some(of) => match self.eval(code, of)? {
-                Value::Module(module) => return self.call_in(code, id, module, (name, name_span), args),
+                Value::Module(module) => return self.call_in(code, id, module, name, name_span, args),
                 value => Some(value),
             },
             None => None,
@@ -95,7 +96,7 @@ impl Cx<'_> {
     }
 
     /// `ribs.rib(3m)`: a function of a module.
-    fn call_in(&mut self, code: Code<'_>, id: ExprId, module: ModuleId, (name, span): (Name, Span), args: &[Arg]) -> Result<Value, Halt> {
+    fn call_in(&mut self, code: Code<'_>, id: ExprId, module: ModuleId, name: Name, span: Span, args: &[Arg]) -> Result<Value, Halt> {
         match self.script_fn(module, name) {
             Some(declaration) => self.call_fn(code, id, (module, declaration), None, args),
             None if self.machine.at(module).is_broken(name) => Err(Halt::Broken),
@@ -137,7 +138,7 @@ impl Cx<'_> {
             Err(Halt::Fault(fault)) => {
                 let blame = self.blame(code, id, builtin, before.is_some(), args);
                 let mut diagnostic = self.locate(&fault, code, call_name(code, id), &blame);
-                self.advise(&fault, (code, id), &blame, &mut diagnostic);
+                self.advise(&fault, code, id, &blame, &mut diagnostic);
                 let of_value = fault.of::<ValueFault>().is_some();
                 let diagnostic = self.by_place((code, call_name(code, id)), (diagnostic, of_value), (builtin, before.as_ref(), args));
                 let few = diagnostic.code.0 == "E402";

@@ -144,7 +144,7 @@ impl Cx<'_> {
         self.remember((module, index), (&state, sees), start, asked, (own_seen, said));
         // Meshes are numbered anew in each run, so what holds one is not kept.
         asked.fleeting |= self.machine.at(module).script.declarations[index as usize].keyword == Keyword::Mesh;
-        self.end(module, index, (state, sees), asked);
+        self.end(module, index, state, sees, asked);
         self.machine.asked.join(asked);
         self.machine.asked.members += self.machine.room.held().saturating_sub(start.members);
         self.machine.asked.steps += self.machine.steps - start.steps;

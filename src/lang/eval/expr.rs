@@ -39,11 +39,11 @@ impl Cx<'_> {
 
     fn compound(&mut self, code: Code<'_>, id: ExprId) -> Result<Value, Halt> {
         match code.expr(id) {
-            Expr::Binary { op, op_span, a, b } => self.binary(code, id, (*op, *op_span), *a, *b),
+            Expr::Binary { op, op_span, a, b } => self.binary(code, id, *op, *op_span, *a, *b),
             Expr::Unary(op, of) => self.unary(code, *op, *of),
             Expr::Tuple(items) => self.tuple(code, id, items),
-            Expr::Call { name, name_span, of, args } => self.call(code, id, (*name, *name_span), *of, args),
-            Expr::Field { of, name, name_span } => self.field(code, id, *of, (*name, *name_span)),
+            Expr::Call { name, name_span, of, args } => self.call(code, id, *name, *name_span, *of, args),
+            Expr::Field { of, name, name_span } => self.field(code, id, *of, *name, *name_span),
             Expr::Index { of, index } => self.index(code, id, *of, *index),
             Expr::List(items) => {
                 let items = self.items(code, items)?;

@@ -34,7 +34,7 @@ struct Filler {
 
 impl Cx<'_> {
     /// Puts the curve that fills a gap into the help of E502 and E503, where the script declares one.
-    pub(crate) fn advise(&self, fault: &Fault, (code, id): (Code<'_>, ExprId), blame: &Blame, diagnostic: &mut Diagnostic) {
+    pub(crate) fn advise(&self, fault: &Fault, code: Code<'_>, id: ExprId, blame: &Blame, diagnostic: &mut Diagnostic) {
         let Some(tolerance) = self.tolerance else { return };
         let (a, b, ordered) = match fault.of() {
             Some(NetworkFault::BoundaryOpen { a, b, .. }) => (a, b, false),

@@ -70,7 +70,7 @@ impl Cx<'_> {
                     },
                     _ => None,
                 };
-                let ways = self.as_vectors(code, id, (value, ty), subject);
+                let ways = self.as_vectors(code, id, value, ty, subject);
                 let draft = self.error(code, "E211", text, span, label);
                 if !ways.is_empty() {
                     return draft.ways(span, &ways).stop();
@@ -85,7 +85,7 @@ impl Cx<'_> {
     }
 
     /// What may have been meant where a point or direction is wanted: `[0, 0, 0]` is a list, `"Z"` and `2m` are none either.
-    fn as_vectors(&self, code: Code<'_>, id: ExprId, (value, ty): (&Value, Ty), subject: &str) -> Vec<String> {
+    fn as_vectors(&self, code: Code<'_>, id: ExprId, value: &Value, ty: Ty, subject: &str) -> Vec<String> {
         let axis = matches!(ty, Ty::Direction | Ty::Axis | Ty::Vector);
         if !axis && !matches!(ty, Ty::Point | Ty::Node) {
             return Vec::new();

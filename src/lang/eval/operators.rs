@@ -46,14 +46,7 @@ pub(crate) struct At<'c> {
 }
 
 impl Cx<'_> {
-    pub(crate) fn binary(
-        &mut self,
-        code: Code<'_>,
-        id: ExprId,
-        (op, op_span): (Binary, Span),
-        a: ExprId,
-        b: ExprId,
-    ) -> Result<Value, Halt> {
+    pub(crate) fn binary(&mut self, code: Code<'_>, id: ExprId, op: Binary, op_span: Span, a: ExprId, b: ExprId) -> Result<Value, Halt> {
         match op {
             Binary::And => return Ok(Value::Bool(self.condition(code, a)? && self.condition(code, b)?)),
             Binary::Or => return Ok(Value::Bool(self.condition(code, a)? || self.condition(code, b)?)),
@@ -88,7 +81,7 @@ impl Cx<'_> {
                 let sides = vec![("a", at.code.span(at.a)), ("b", at.code.span(at.b))];
                 let blame = Blame { items: sides.clone(), whole: sides };
                 let mut diagnostic = self.locate(&fault, at.code, at.code.span(at.id), &blame);
-                self.advise(&fault, (at.code, at.id), &blame, &mut diagnostic);
+                self.advise(&fault, at.code, at.id, &blame, &mut diagnostic);
                 self.sink.reports.push(diagnostic);
                 Halt::Failed
             }

@@ -68,11 +68,11 @@ impl Cx<'_> {
             let rest: String = rest.filter_map(|(a, s)| a.name.map(|(n, _)| format!(", {}: {s}", self.program.names.text(n)))).collect();
             return Some((LISTED, format!("{}([{}]{rest})", builtin.name, sources[..listed].join(", "))));
         }
-        self.named_call(code, builtin, (args, &sources), values).map(|typed| (NAMED, typed))
+        self.named_call(code, builtin, args, &sources, values).map(|typed| (NAMED, typed))
     }
 
     /// The arguments by the names of the parameters that they fit, in order; a centre that is not told is the origin.
-    fn named_call(&mut self, code: Code<'_>, builtin: &Builtin, (args, sources): (&[Arg], &[String]), values: &[Value]) -> Option<String> {
+    fn named_call(&mut self, code: Code<'_>, builtin: &Builtin, args: &[Arg], sources: &[String], values: &[Value]) -> Option<String> {
         let mut taken: Vec<Option<String>> = vec![None; builtin.params.len()];
         let mut next = 0;
         for ((arg, value), source) in args.iter().zip(values).zip(sources) {

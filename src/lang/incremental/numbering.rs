@@ -44,7 +44,7 @@ impl Cx<'_> {
     }
 
     /// Says what an evaluation ended with: what does not depend on who asked is known to all.
-    pub(crate) fn end(&mut self, module: ModuleId, index: u32, (state, sees): (State, Sees), asked: Dependencies) {
+    pub(crate) fn end(&mut self, module: ModuleId, index: u32, state: State, sees: Sees, asked: Dependencies) {
         let m = self.machine.at_mut(module);
         if sees == Sees::Own {
             m.within.remove(&index);

@@ -144,7 +144,7 @@ impl Cx<'_> {
                 if asked.world && world.is_none() {
                     return;
                 }
-                if let Some(kept) = self.kept(module, index, (start, asked), said) {
+                if let Some(kept) = self.kept(module, index, start, asked, said) {
                     let kept = Kept { value, seen, world, numbered: asked.numbered, ..kept };
                     if let Some(memory) = &mut self.memory {
                         memory.keep(key, kept);
@@ -156,7 +156,7 @@ impl Cx<'_> {
     }
 
     /// What an evaluation did beside making a value; `None` when that cannot be repeated.
-    fn kept(&self, module: ModuleId, index: u32, (start, asked): (Start, Dependencies), said: &[Diagnostic]) -> Option<Kept> {
+    fn kept(&self, module: ModuleId, index: u32, start: Start, asked: Dependencies, said: &[Diagnostic]) -> Option<Kept> {
         let m = self.machine.at(module);
         let declaration = &m.script.declarations[index as usize];
         match declaration.keyword {
