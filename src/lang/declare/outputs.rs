@@ -50,7 +50,7 @@ impl Cx<'_> {
             Keyword::Picture => {
                 let mut done = Vec::new();
                 self.family(code, family, &mut |cx, member| {
-                    let picture = cx.picture(code, member, (things, *to), settings)?;
+                    let picture = cx.picture(code, member, things, *to, settings)?;
                     done.push((code.declaration, picture));
                     Ok(Value::None)
                 })?;
@@ -59,7 +59,7 @@ impl Cx<'_> {
             _ => {
                 let mut done = Vec::new();
                 self.family(code, family, &mut |cx, member| {
-                    let export = cx.export(code, member, (things, *to), settings)?;
+                    let export = cx.export(code, member, things, *to, settings)?;
                     done.push((code.declaration, export));
                     Ok(Value::None)
                 })?;
@@ -73,7 +73,8 @@ impl Cx<'_> {
         &mut self,
         code: Code<'_>,
         member: [u32; 2],
-        (things, to): (&[ExprId], Option<ExprId>),
+        things: &[ExprId],
+        to: Option<ExprId>,
         settings: &[ast::Setting],
     ) -> Result<ExportSpec, Halt> {
         let mut gather = Gather::default();

@@ -44,7 +44,8 @@ impl Cx<'_> {
         &mut self,
         code: Code<'_>,
         member: [u32; 2],
-        (things, to): (&[ExprId], Option<ExprId>),
+        things: &[ExprId],
+        to: Option<ExprId>,
         settings: &[ast::Setting],
     ) -> Result<PictureSpec, Halt> {
         let mut gather = Gather::default();

@@ -34,7 +34,7 @@ impl Cx<'_> {
             return self.run(code, id, field, Some(value), &[]);
         }
         if let Some(declaration) = self.script_fn(code.module, name) {
-            return self.call_fn(code, id, (code.module, declaration), Some(value), &[]);
+            return self.call_fn(code, id, code.module, declaration, Some(value), &[]);
         }
         match function {
             Some(function) if !matches!(value, Value::Record(_)) || accepts(function.params.first().map_or(Ty::None, |p| p.ty), &value) => {

@@ -62,7 +62,7 @@ impl Cx<'_> {
             None => None,
         };
         if let Some(declaration) = self.script_fn(code.module, name) {
-            return self.call_fn(code, id, (code.module, declaration), first, args);
+            return self.call_fn(code, id, code.module, declaration, first, args);
         }
         let (function, has_fields) = self.word(name);
         let one = usize::from(first.is_some()) + args.len() == 1 && args.iter().all(|a| a.name.is_none());
@@ -98,7 +98,7 @@ impl Cx<'_> {
     /// `ribs.rib(3m)`: a function of a module.
     fn call_in(&mut self, code: Code<'_>, id: ExprId, module: ModuleId, name: Name, span: Span, args: &[Arg]) -> Result<Value, Halt> {
         match self.script_fn(module, name) {
-            Some(declaration) => self.call_fn(code, id, (module, declaration), None, args),
+            Some(declaration) => self.call_fn(code, id, module, declaration, None, args),
             None if self.machine.at(module).is_broken(name) => Err(Halt::Broken),
             None => {
                 let (label, text) = (self.machine.at(module).label.clone(), self.program.names.text(name).to_owned());
@@ -198,7 +198,8 @@ impl Cx<'_> {
         &mut self,
         code: Code<'_>,
         id: ExprId,
-        (module, declaration): (ModuleId, u32),
+        module: ModuleId,
+        declaration: u32,
         first: Option<Value>,
         args: &[Arg],
     ) -> Result<Value, Halt> {
@@ -216,7 +217,7 @@ impl Cx<'_> {
         let declared = &script.declarations[declaration as usize];
         let DeclarationKind::Fn { bound, params, returns, body } = &declared.kind else { return Err(Halt::Bug("not a function")) };
         let callee = Code { nodes: &declared.nodes, module, declaration };
-        let given = self.fn_args(code, id, (bound.name, params), first, args)?;
+        let given = self.fn_args(code, id, bound.name, params, first, args)?;
 
         let site = self.machine.site;
         let (base, room) = (self.machine.locals.len(), self.machine.room);
@@ -266,7 +267,8 @@ impl Cx<'_> {
         &mut self,
         code: Code<'_>,
         id: ExprId,
-        (name, params): (Name, &[FnParam]),
+        name: Name,
+        params: &[FnParam],
         first: Option<Value>,
         args: &[Arg],
     ) -> Result<Vec<Option<Value>>, Halt> {

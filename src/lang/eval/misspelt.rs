@@ -71,14 +71,14 @@ impl Cx<'_> {
                 known.insert(unknown, near);
             }
             match known.get(unknown) {
-                Some(Some(near)) => self.tell_near(diagnostic, unknown, near),
+                Some(Some(near)) => self.offer_near(diagnostic, unknown, near),
                 Some(None) => self.offer_script(diagnostic, unknown),
                 None => {}
             }
         }
     }
 
-    fn tell_near(&self, diagnostic: &mut Diagnostic, unknown: &Unknown, (near, declared): &(String, Option<(&'static str, usize)>)) {
+    fn offer_near(&self, diagnostic: &mut Diagnostic, unknown: &Unknown, (near, declared): &(String, Option<(&'static str, usize)>)) {
         let Some(label) = diagnostic.labels.first_mut() else { return };
         diagnostic.fixes.push(Fix { file: label.file, span: label.span, edit: Edit::Put(near.clone()) });
         if unknown.among == Among::Members {

@@ -106,7 +106,7 @@ impl FromValue for CurveOrSurface {
 }
 
 /// A surface whose warnings say all there is to say.
-pub(crate) fn told(cx: &mut Cx, surface: Surface, notes: &[Fault]) -> Surface {
+pub(crate) fn with_notes(cx: &mut Cx, surface: Surface, notes: &[Fault]) -> Surface {
     notes.iter().for_each(|note| cx.say(note));
     surface
 }

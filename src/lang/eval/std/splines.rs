@@ -8,7 +8,7 @@ use crate::base::tolerance::Tolerance;
 use crate::builtins;
 use crate::geometry::Spline;
 use crate::geometry::construct::{build, polynomial};
-use crate::lang::eval::std::curves::{CurveOrSurface, ends, places, told, unit, whole};
+use crate::lang::eval::std::curves::{CurveOrSurface, ends, places, unit, whole, with_notes};
 use crate::lang::eval::std::kinds::PointsOrSurface;
 use crate::lang::eval::std::surfaces::finished;
 use crate::lang::values::conversions::{Direction, Length, Point};
@@ -224,7 +224,7 @@ builtins! {
                     return Err(ValueFault::OutsideRange { argument: "tolerance", found, range }.into());
                 }
                 let (made, notes) = offset(&surface, distance.0, origin, &near)?;
-                Ok(Value::Surface(if notes.is_empty() { finished(cx, made, &[])? } else { told(cx, made, &notes) }))
+                Ok(Value::Surface(if notes.is_empty() { finished(cx, made, &[])? } else { with_notes(cx, made, &notes) }))
             }
         }
     };

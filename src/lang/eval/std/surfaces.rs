@@ -44,12 +44,12 @@ pub(crate) fn finished(cx: &mut Cx, surface: Surface, notes: &[Fault]) -> Result
     let tolerance = cx.tolerance()?;
     let found = surface.validate(&tolerance);
     found.iter().for_each(|warning| cx.say(warning));
-    tell_crossing(cx, &[notes, &found].concat(), std::slice::from_ref(&surface), &tolerance);
+    note_crossing(cx, &[notes, &found].concat(), std::slice::from_ref(&surface), &tolerance);
     Ok(surface)
 }
 
 /// W669 where faces made together cross themselves or each other; nothing where it is said already that they fold over.
-pub(crate) fn tell_crossing(cx: &mut Cx, said: &[Fault], faces: &[Surface], tolerance: &Tolerance) {
+pub(crate) fn note_crossing(cx: &mut Cx, said: &[Fault], faces: &[Surface], tolerance: &Tolerance) {
     const FOLDS: [&str; 4] = ["W606", "W607", "W639", "W664"];
     if said.iter().any(|fault| FOLDS.contains(&fault.code().0)) {
         return;

@@ -4,7 +4,7 @@ use crate::base::fault::{Fault, Say, ValueFault};
 use crate::base::limits::WORK_OF_A_SURFACE;
 use crate::base::work;
 use crate::lang::eval::std::kinds::SurfaceOrShell;
-use crate::lang::eval::std::surfaces::tell_crossing;
+use crate::lang::eval::std::surfaces::note_crossing;
 use crate::lang::values::conversions::Length;
 use crate::model::measure::points_inwards;
 use crate::surface::Surface;
@@ -82,7 +82,7 @@ builtins! {
             }
         };
         notes.iter().for_each(|note| cx.say(note));
-        tell_crossing(cx, &notes, &made, &tolerance);
+        note_crossing(cx, &notes, &made, &tolerance);
         Ok(made)
     };
 }
