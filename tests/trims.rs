@@ -129,7 +129,14 @@ fn a_plate_with_holes_is_better_than_frontal_meshers() {
             add_loop(&mut outline, &chart_surface, &star(DVec2::new(x, y), &vec![r; n], 0.0), 2.0 * size);
         }
     }
-    let settings = OptimizeSettings { smooth: 30, beyond: 1.0, fine: FINEST, wanted: 0.92, fair: 1.0, longest: 1.4 };
+    let settings = OptimizeSettings {
+        smoothing_rounds: 30,
+        relaxation: 1.0,
+        still_quality: FINEST,
+        min_quality: 0.92,
+        fair_quality: 1.0,
+        max_length_ratio: 1.4,
+    };
     let task = Task {
         chart_surface: &chart_surface,
         field: &UniformSize(size),

@@ -11,9 +11,9 @@ use crate::mesh::chart::halved::odd;
 use crate::mesh::chart::rings;
 use crate::mesh::data::face_geometry::FaceNodes;
 use crate::mesh::data::face_mesh::FaceMesh;
-use crate::mesh::face::free::grown;
+use crate::mesh::face::free::filled;
 use crate::mesh::request::work::{too_much_work, work_on};
-use crate::mesh::tri::fit::near;
+use crate::mesh::tri::triangle_fit::near;
 use crate::mesh::tri::trouble::no_area;
 
 /// Computes the face, or takes it from the cache.
@@ -32,7 +32,7 @@ pub fn prepare(face_input: &FaceInput, face: &Face, cache: Option<&CacheView>, j
     {
         return Ok(prepared(face_input, face, free, border.ids, inside));
     }
-    let all = || grown(face_input, face, (border, chart, outline), job);
+    let all = || filled(face_input, face, border, &chart, &outline, job);
     let surface = &face_input.input.model.surfaces[face.surface.index()].surface;
     // A face that is tried again with shorter steps of its border, because nothing kept its limits, gets a smaller budget.
     let halvings = if face.method.is_coarse() { face.halved.min(MAX_BUDGET_HALVINGS) } else { 0 };
