@@ -114,7 +114,7 @@ mod plate {
     use lofting::base::triangulate_points::points;
     use lofting::mesh::chart::outline::Outline;
     use lofting::mesh::chart::parametric_surface::{ParametricSurface, Spot, UniformSize};
-    use lofting::mesh::tri::build::{Lattice, Task, triangulate};
+    use lofting::mesh::tri::build::{NodePlacement, Task, triangulate};
     use lofting::mesh::tri::optimize::{FINEST, OptimizeSettings};
     use lofting::mesh::tri::shape::quality;
 
@@ -185,7 +185,7 @@ mod plate {
                 fair_quality: 1.0,
                 max_length_ratio: 1.3,
             };
-            let (field, lattice) = (UniformSize(4.0 * 0.8), Lattice::Tree);
+            let (field, lattice) = (UniformSize(4.0 * 0.8), NodePlacement::Tree);
             let task = Task { chart_surface: &Flat, field: &field, outline: &outline, lattice, settings, most: 100_000, limit_check: None };
             let triangulation = triangulate(&task, &Job::new()).unwrap().unwrap().triangulation;
             figures(&triangulation.p, triangulation.tri.iter().copied())

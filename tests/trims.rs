@@ -13,7 +13,7 @@ use lofting::base::tolerance::Tolerance;
 use lofting::geometry::construct::build::{arc_through, circle, line};
 use lofting::mesh::chart::outline::Outline;
 use lofting::mesh::chart::parametric_surface::{SizeField, UniformSize};
-use lofting::mesh::tri::build::{Lattice, Task, triangulate};
+use lofting::mesh::tri::build::{NodePlacement, Task, triangulate};
 use lofting::mesh::tri::optimize::{FINEST, OptimizeSettings};
 use lofting::model::measure;
 use lofting::network::Chain;
@@ -71,7 +71,7 @@ fn spiked_loops_make_sound_faces_or_say_why() {
             chart_surface: &chart_surface,
             field,
             outline: &outline,
-            lattice: Lattice::Triangles,
+            lattice: NodePlacement::Triangles,
             settings: CARE,
             most: 100_000,
             limit_check: None,
@@ -104,7 +104,7 @@ fn holes_of_any_size_are_kept() {
             chart_surface: &chart_surface,
             field: &UniformSize(size),
             outline: &outline,
-            lattice: Lattice::Triangles,
+            lattice: NodePlacement::Triangles,
             settings: CARE,
             most: 100_000,
             limit_check: None,
@@ -141,7 +141,7 @@ fn a_plate_with_holes_is_better_than_frontal_meshers() {
         chart_surface: &chart_surface,
         field: &UniformSize(size),
         outline: &outline,
-        lattice: Lattice::Triangles,
+        lattice: NodePlacement::Triangles,
         settings,
         most: 100_000,
         limit_check: None,

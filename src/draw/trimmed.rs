@@ -9,7 +9,7 @@ use crate::base::job::Job;
 use crate::mesh::chart::affine::Chart;
 use crate::mesh::chart::outline::Outline;
 use crate::mesh::chart::parametric_surface::UniformSize;
-use crate::mesh::tri::build::{Lattice, Task, triangulate};
+use crate::mesh::tri::build::{NodePlacement, Task, triangulate};
 use crate::mesh::tri::optimize::{FINEST, OptimizeSettings};
 use crate::surface::{Side, Surface};
 
@@ -85,7 +85,7 @@ fn filled(surface: &Surface, mut outline: Outline, places: &[(f64, f64)], fine: 
         chart_surface: &chart,
         field: &field,
         outline: &outline,
-        lattice: Lattice::Triangles,
+        lattice: NodePlacement::Triangles,
         settings,
         most: MOST * MOST,
         limit_check: None,

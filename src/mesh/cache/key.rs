@@ -14,7 +14,7 @@ use crate::mesh::size::rule_lines::links_of;
 use crate::model::{PatchId, SurfaceId};
 use crate::network::Chain;
 
-/// The key of the mesh that a plan makes on its layouts; `size` is the target size where no rule says another,
+/// The key of the mesh that a plan makes on its layouts; `size` is the target size where no rule sets another,
 /// `surfaces` the digests of the plan's surfaces.
 pub fn of(input: &Input, layouts: &[Layout], size: f64, surfaces: &BTreeMap<SurfaceId, Digest>) -> Digest {
     let mut to = StableHasher::new("mesh").text(env!("CARGO_PKG_VERSION")).number(u64::from(crate::mesh::request::VERSION));

@@ -144,8 +144,8 @@ fn opposite(face_mesh: &FaceMesh, mesh: &Mesh) -> (usize, usize) {
 
 /// Whether all steps of a side are written, or their growth.
 pub fn is_written(face: &Face, sizing: &Sizing) -> bool {
-    let says = |k: usize| sizing.decisions[k].count.is_some() || sizing.bias_rule[k].is_some();
-    let all = |side: &FaceSide| !side.uses.is_empty() && side.uses.iter().all(|u| says(u.segment));
+    let is_fixed = |k: usize| sizing.decisions[k].count.is_some() || sizing.bias_rule[k].is_some();
+    let all = |side: &FaceSide| !side.uses.is_empty() && side.uses.iter().all(|u| is_fixed(u.segment));
     face.sides.iter().any(all)
 }
 

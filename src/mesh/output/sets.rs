@@ -1,4 +1,4 @@
-//! Named sets: one per surface, then those asked for.
+//! Named sets: one per surface, then the requested ones.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -36,7 +36,7 @@ pub struct MeshPart {
 /// Largest number of times that the steps of the border of a face are halved because triangles beside it are tilted against the surface.
 const MAX_TILT_HALVINGS: u32 = 3;
 
-/// Divides what is laid out, refines until every limit is kept, and fills. `size` is the target size where no rule says
+/// Divides what is laid out, refines until every limit is kept, and fills. `size` is the target size where no rule sets
 /// another, model units.
 pub fn assemble(input: &Input, mut layout: Layout, size: f64, cache: Option<&CacheView>, job: &Job) -> Result<MeshPart> {
     inside::place(input, &mut layout);

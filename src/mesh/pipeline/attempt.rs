@@ -1,4 +1,4 @@
-//! The mesh of some faces, divided and filled, and divided anew for as long as something asks for it.
+//! The mesh of some faces, divided and filled, and divided anew for as long as a retry demands it.
 
 use std::collections::BTreeMap;
 
@@ -109,7 +109,7 @@ struct DividedSegments {
 struct Attempt<'a> {
     input: &'a Input<'a>,
     layout: &'a mut Layout,
-    /// Where no rule says another, model units.
+    /// Target size where no rule sets another one, model units.
     size: f64,
     cache: Option<&'a CacheView<'a>>,
     job: &'a Job,
@@ -179,7 +179,7 @@ impl Attempt<'_> {
         Ok(DividedSegments { is_settled: counts == self.checked, counts, strip, nodes })
     }
 
-    /// Divides and fills once, until something asks for another division.
+    /// Divides and fills once, or up to the first reason for another division.
     fn round(&mut self) -> Result<RoundResult> {
         let DividedSegments { counts, strip, nodes, is_settled } = self.divide()?;
         let (input, cache, job) = (self.input, self.cache, self.job);

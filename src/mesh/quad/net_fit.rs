@@ -21,7 +21,7 @@ use crate::mesh::request::fault::{MeshFault, MeshLimit};
 use crate::mesh::request::methods::{Elements, Method};
 use crate::mesh::request::size_requests::floor_keeps;
 use crate::mesh::request::work::allow;
-use crate::mesh::tri::build::{Lattice, Task, initial_triangulation};
+use crate::mesh::tri::build::{NodePlacement, Task, initial_triangulation};
 use crate::mesh::tri::graded_size::GradedSize;
 use crate::mesh::tri::limit_table::LimitTable;
 use crate::mesh::tri::longest::longest_side;
@@ -90,7 +90,7 @@ impl NetFit<'_> {
         let quads = self.fit.face.elements == Elements::Quads;
         let twice = Twice(wanted);
         let cells: &dyn SizeField = if quads { &twice } else { wanted };
-        let lattice = if self.fit.face.method == Method::Quadtree { Lattice::Tree } else { Lattice::Squares };
+        let lattice = if self.fit.face.method == Method::Quadtree { NodePlacement::Tree } else { NodePlacement::Squares };
         let (chart_surface, outline) = (self.fit.chart, &self.halves.outline);
         let most = if quads { self.fit.most().div_ceil(4) } else { self.fit.most() };
         let task = Task { chart_surface, field: cells, outline, settings: self.fit.settings, lattice, most, limit_check: None };

@@ -95,7 +95,7 @@ impl<'a> Smoother<'a> {
         NodePosition { xy, p: spot.p, normal: spot.normal() }
     }
 
-    /// A node moved for good.
+    /// Completes the move of a node.
     fn settle(&mut self, node: usize) {
         self.net.size[node] = self.field.size(self.net.xy[node], self.net.p[node]);
         self.wake(node);

@@ -19,7 +19,7 @@ use crate::mesh::tri::trouble::{Outcome, Trouble};
 
 /// Where inner nodes come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Lattice {
+pub enum NodePlacement {
     /// A lattice of equilateral triangles, grown from the border.
     Triangles,
     /// A lattice of squares, grown from the border.
@@ -39,7 +39,7 @@ pub struct Task<'a> {
     /// Settings of the optimization.
     pub settings: OptimizeSettings,
     /// Where inner nodes come from.
-    pub lattice: Lattice,
+    pub lattice: NodePlacement,
     /// Largest number of inner nodes.
     pub most: usize,
     /// Limits: triangles over one are divided.
@@ -95,12 +95,12 @@ pub fn initial_triangulation(task: &Task, job: &Job) -> Outcome<Triangulation> {
         return Ok(Err(Trouble::Full));
     }
     let grown = match task.lattice {
-        Lattice::Triangles | Lattice::Squares => {
+        NodePlacement::Triangles | NodePlacement::Squares => {
             let seeds = seeds(&coarse, &kept, outline);
-            let cell = if task.lattice == Lattice::Squares { LatticeCell::Square } else { LatticeCell::Triangle };
+            let cell = if task.lattice == NodePlacement::Squares { LatticeCell::Square } else { LatticeCell::Triangle };
             grow(&FrontInput { chart_surface: task.chart_surface, field: task.field, outline, seeds: &seeds, cell, most: task.most }, job)?
         }
-        Lattice::Tree => {
+        NodePlacement::Tree => {
             match quadtree::nodes(&TreeFace { chart_surface: task.chart_surface, field: task.field, outline, most: task.most }) {
                 Ok(grown) => grown,
                 Err(trouble) => return Ok(Err(trouble)),
@@ -147,7 +147,7 @@ fn expected(task: &Task, coarse: &Triangles, kept: &[bool]) -> f64 {
         let size = task.field.size(middle.0, middle.1);
         let area = (c[1].1 - c[0].1).cross(c[2].1 - c[0].1).length();
         // Half a node a triangle of side `size`, whose area is √3/4 of its square, or one a square.
-        let cell = if task.lattice == Lattice::Squares { 1.0 } else { TALL };
+        let cell = if task.lattice == NodePlacement::Squares { 1.0 } else { TALL };
         let nodes = 0.5 * area / (cell * size * size);
         let varies = || c.iter().any(|c| task.field.size(c.0, c.1) * ESTIMATE.equal_size_ratio < size);
         if task.field.is_even() || left == 0 || nodes < 1.0 || nodes < ESTIMATE.nodes_of_one_size && !varies() {

@@ -5,8 +5,8 @@
 //! become one node where some place between them keeps the limits, edges are flipped to where the bounds of their two triangles
 //! are smaller, nodes are moved towards those of their triangles that have the larger bounds, and nodes beside what changed are tried
 //! again. Triangles come out long where the surface bends one way only (decimation [Schroeder, Zarge & Lorensen 1992] with the bound
-//! of `deviation/triangle.rs` in place of a distance of points). At last neighbours are joined whose bounds are too large at first, where moving the
-//! nodes round them brings these below the limit.
+//! of `deviation/triangle.rs` in place of a distance of points). At last neighbours are joined whose bounds are
+//! too large at first, where moving the nodes round them brings these below the limit.
 
 pub mod relax;
 

@@ -3,7 +3,8 @@
 //! Lines that run through all of a face would be needed everywhere for one place that demands them; cells are halved alone, and
 //! fine cells meet coarse ones node to node [Piegl & Tiller 1998]. A cut starts where one beyond
 //! the side of its cell ends, or at a node of a straight border, when there is one near its place, and else at a value that is
-//! cut elsewhere when one is very near: lines go on from cell to cell. Kink lines are cut first. Whether a border crosses a cell is decided exactly.
+//! cut elsewhere when one is very near: lines go on from cell to cell. Kink lines are cut first. Whether a border crosses a cell is
+//! decided exactly.
 
 use std::cmp::Ordering;
 use std::collections::BTreeSet;

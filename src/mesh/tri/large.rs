@@ -11,7 +11,7 @@ use crate::mesh::request::sources::{Source, Sources};
 use crate::mesh::request::work::{allow, too_many};
 use crate::mesh::size::border_spacing::SPACING;
 use crate::mesh::size::too_large::of_size;
-use crate::mesh::tri::build::{Lattice, Task, expected_nodes};
+use crate::mesh::tri::build::{NodePlacement, Task, expected_nodes};
 use crate::mesh::tri::graded_size::{Background, GradedSize};
 use crate::mesh::tri::triangle_fit::FaceFit;
 
@@ -57,7 +57,7 @@ impl FaceFit<'_> {
 
     /// Estimated numbers of elements for fields.
     fn expected<const N: usize>(&self, fields: [&dyn SizeField; N]) -> [f64; N] {
-        let lattice = Lattice::Triangles;
+        let lattice = NodePlacement::Triangles;
         let task = |field| Task {
             chart_surface: self.chart,
             field,

@@ -17,7 +17,7 @@ pub struct Claim<'a> {
     pub triangles: &'a [[u32; 3]],
     /// Quads of the face.
     pub quads: &'a [[u32; 4]],
-    /// The kind that was asked for.
+    /// The requested kind.
     pub kind: Elements,
     /// Edges of the border with the elements on their left; one that the face meets on both sides is there twice.
     pub border: &'a [[u32; 2]],

@@ -150,7 +150,7 @@ impl BodyProbe<'_> {
         self.nearest.surface().normal(at.uv.0, at.uv.1)
     }
 
-    /// Whether a place of the face is off its border, by more than places that are told apart.
+    /// Whether a place of the face is off its border, by more than the distance of distinct places.
     fn is_inner(&self, p: DVec3, normal: DVec3) -> bool {
         let first = crate::base::math::any_normal(normal);
         let second = normal.cross(first);
@@ -239,7 +239,7 @@ fn common(a: &BodyProbe, b: &BodyProbe, near: DVec3) -> Option<DVec3> {
         let (m, n) = (a.normal(&x), b.normal(&y));
         let cosine = m.dot(n);
         let sine2 = m.length_squared() * n.length_squared() - cosine * cosine;
-        // Faces that touch along each other do not cross: a thousandth of a radian is none that tells.
+        // Faces that touch along each other do not cross: an angle below a thousandth of a radian is no crossing.
         if sine2 <= FLAT {
             return None;
         }

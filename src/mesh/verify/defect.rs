@@ -7,7 +7,7 @@ use crate::base::text::real;
 pub enum Defect {
     /// No element at all.
     Empty,
-    /// An element of a kind that was not asked for.
+    /// An element of another kind than requested.
     Kind,
     /// A node that is not of this face, or twice in one element.
     Node(u32),

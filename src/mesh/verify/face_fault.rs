@@ -1,4 +1,4 @@
-//! The fault for a face whose elements are not what it asks for: by the cause where one is found, else as a defect of the mesher.
+//! The fault for a face with a defect: by the cause where one is found, else as a defect of the mesher.
 
 use crate::base::fault::Fault;
 use crate::base::tolerance::TOLD_APART;
@@ -13,7 +13,7 @@ use crate::mesh::verify::defect::Defect;
 use crate::mesh::verify::face_border::LayoutBorder;
 use crate::surface::faults::CutFault;
 
-/// E999 for a face whose elements are not what it asks for; E720 where it closes on itself or its border turns back along itself
+/// E999 for a face with a defect; E720 where it closes on itself or its border turns back along itself
 /// more narrowly than its size.
 pub(crate) fn fault(face_input: &FaceInput, face: &Face, face_mesh: &FaceMesh, defect: Defect, mesh: &Mesh) -> Fault {
     let FaceInput { input, layout, nodes, .. } = face_input;

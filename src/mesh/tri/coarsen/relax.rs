@@ -161,7 +161,7 @@ impl Coarsening<'_> {
         worst
     }
 
-    /// Bounds of triangles whose nodes have moved are computed anew when asked for.
+    /// Bounds of triangles whose nodes have moved are computed anew when needed.
     fn invalidate(&mut self, some: &[u32]) {
         for t in some {
             if let Some(ratio) = self.ratios.get_mut(*t as usize) {

@@ -93,8 +93,8 @@ impl IsolineMesher<'_> {
         (b - a).cross(d - a).length() <= self.input.point * longest
     }
 
-    /// Whether the surface between the places of a triangle without area goes round a good way off the line of its corners, and
-    /// farther than the chord error: they are on both sides of a seam, or in several poles.
+    /// Whether the surface between the places of a triangle without area is far from the line of its corners, by more than a share
+    /// of its length and than the chord error: they are on both sides of a seam, or in several poles.
     fn wraps(&self, triangulation: &Triangulation, c: [u32; 3]) -> bool {
         let chart = self.input.chart;
         let places = c.map(|n| DVec2::from(chart.uv(triangulation.xy[n as usize])));
