@@ -78,7 +78,9 @@ fn of_face(
     }
     let blame = Blame { made, sizing, face, mesh, edges: edges(made, face) };
     let pointed = blame.pointed();
-    let sharp = job::looking(all).filter(|(angle, t)| *angle < MAP_CHOICE.min_map_angle && !blame.is_near(&pointed, *t)).min_by(|a, b| a.0.total_cmp(&b.0));
+    let sharp = job::looking(all)
+        .filter(|(angle, t)| *angle < MAP_CHOICE.min_map_angle && !blame.is_near(&pointed, *t))
+        .min_by(|a, b| a.0.total_cmp(&b.0));
     let sharp = sharp.map(|(angle, t)| {
         let surface = made.input.model.surfaces[face.surface.index()].name.clone();
         Remark::Sharp { angle, at: mesh.nodes[t[0] as usize], surface, faces: 1, cure: blame.cure(foreseen, t) }
