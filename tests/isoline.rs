@@ -1,9 +1,9 @@
-//! Cells between lines of constant u and v: the marks of [Jeong & Park 2000] against a reference, and against the winding.
+//! IsolineCells between lines of constant u and v: the marks of [Jeong & Park 2000] against a reference, and against the winding.
 
 use std::f64::consts::PI;
 
 use glam::DVec2;
-use lofting::mesh::tri::isoline::Cells;
+use lofting::mesh::tri::isoline::{Cut, IsolineCells};
 use lofting::mesh::tri::marks::{corners, marks};
 use lofting::mesh::tri::tree::{Class, Tree};
 use serde_json::Value;
@@ -73,9 +73,9 @@ fn a_small_loop_crosses_its_cell() {
     let square = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(DVec2::from);
     let eye = [(0.4, 0.4), (0.4, 0.41), (0.41, 0.41), (0.41, 0.4)].map(DVec2::from);
     let segments = [closed(&square), closed(&eye)].concat();
-    let mut cells = Cells::new(&segments, segments.len(), Default::default());
+    let mut cells = IsolineCells::new(&segments, segments.len(), Default::default());
     assert_eq!(cells.all()[0].class, Class::Partial);
-    cells.split(0, (0, 2), lofting::mesh::request::decider::Why::Size);
+    cells.split(0, Cut { axis: 0, parts: 2 }, lofting::mesh::request::decider::Why::Size);
     let classes: Vec<Class> = cells.all()[1..].iter().map(|c| c.class).collect();
     assert_eq!(classes, [Class::Partial, Class::Interior]);
     assert!(!cells.holds(DVec2::splat(0.405)) && cells.holds(DVec2::splat(0.2)));

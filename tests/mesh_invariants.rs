@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use glam::DVec2;
-use lofting::mesh::verify::covered_area::{CoveredArea, Place, agrees, inside, left_out};
+use lofting::mesh::verify::covered_area::{CoveredArea, LoopPlace, NodePlaces, agrees, inside, left_out};
 use lofting::session::disk::{Disk, Outputs};
 use lofting::session::guard::guarded;
 
@@ -96,7 +96,8 @@ fn plate() -> (Vec<[u32; 3]>, Vec<[u32; 2]>) {
 #[test]
 fn a_broken_mesh_is_seen() {
     use lofting::mesh::Elements;
-    use lofting::mesh::verify::face_check::{Claim, Defect};
+    use lofting::mesh::verify::connectivity::Claim;
+    use lofting::mesh::verify::defect::Defect;
     let (whole, border) = plate();
     let look = |triangles: &[[u32; 3]], border: &[[u32; 2]], euler: i64| {
         let kind = Elements::Triangles;
@@ -134,7 +135,7 @@ fn a_broken_mesh_is_seen() {
 }
 
 /// A square of six by six cells in the parameter plane with a hole of two by two, in triangles: places, elements, loops.
-fn covered_square() -> (Vec<DVec2>, Vec<[u32; 3]>, Vec<Vec<Place>>) {
+fn covered_square() -> (Vec<DVec2>, Vec<[u32; 3]>, Vec<Vec<LoopPlace>>) {
     let at = |i: u32, j: u32| i + 7 * j;
     let places = (0..49).map(|n| DVec2::new(f64::from(n % 7), f64::from(n / 7)) / 6.0).collect();
     let cells = (0..36).map(|k| (k % 6, k / 6)).filter(|(i, j)| !((2..4).contains(i) && (2..4).contains(j)));
@@ -158,7 +159,7 @@ fn elements_that_cover_another_part_are_seen() {
         covered
     };
     // Loops that are known to a thousandth see everything that is larger.
-    let about: Vec<Vec<Place>> = loops.iter().map(|l| l.iter().map(|(p, _)| (*p, 1e-3)).collect()).collect();
+    let about: Vec<Vec<LoopPlace>> = loops.iter().map(|l| l.iter().map(|(p, _)| (*p, 1e-3)).collect()).collect();
     for loops in [&loops, &about] {
         let agrees = |places: &[DVec2], triangles: &[[u32; 3]]| agrees(cover(places, triangles), inside(loops));
         assert!(agrees(&places, &whole));
@@ -231,7 +232,8 @@ fn caps_that_are_broken_are_seen() {
                 if e.len() == 3 { covered.add(at(0), at(1), at(2)) } else { covered.add_quad([at(0), at(1), at(2), at(3)]) }
             }
             let slices = elements.iter().map(|e| e.as_slice());
-            left_out(slices, (uv, &whole.ids, whole.border), &whole.around).is_some_and(|out| agrees(covered.and(out), loops))
+            left_out(slices, NodePlaces { uv, ids: &whole.ids }, whole.border, &whole.around)
+                .is_some_and(|out| agrees(covered.and(out), loops))
         };
         assert!(look(&whole.elements, &whole.uv), "quads: {quads}");
         for k in 0..whole.elements.len() {

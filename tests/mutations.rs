@@ -19,7 +19,7 @@ use lofting::io::tables::json::Json;
 use lofting::io::tables::{json, table, table_read, table_write};
 use lofting::mesh::chart::outline::{Outline, in_line};
 use lofting::mesh::chart::parametric_surface::{ParametricSurface, UniformSize};
-use lofting::mesh::tri::build::{Lattice, Task, triangulate};
+use lofting::mesh::tri::build::{NodePlacement, Task, triangulate};
 
 use crate::support::mutate::{Random, mutated};
 use crate::support::outlines::{CARE, Waves, add_loop, sound};
@@ -281,7 +281,7 @@ fn triangulated(bytes: &[u8]) -> bool {
         chart_surface: &surface,
         field: &field,
         outline: &outline,
-        lattice: [Lattice::Triangles, Lattice::Squares, Lattice::Tree][bytes.len() % 3],
+        lattice: [NodePlacement::Triangles, NodePlacement::Squares, NodePlacement::Tree][bytes.len() % 3],
         settings: CARE,
         most: 20_000,
         limit_check: None,

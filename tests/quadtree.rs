@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
 use glam::DVec2;
-use lofting::mesh::tri::tree::{Cell, Class, Halt, MAX_DEPTH, Tree};
+use lofting::mesh::tri::tree::{Class, Halt, MAX_DEPTH, Tree, TreeCell};
 use serde_json::Value;
 
 use crate::support::borders::closed;
@@ -66,7 +66,7 @@ fn a_square_with_a_round_hole() {
     let given = all["square_with_hole"]["hole_segment_length"].as_f64().unwrap();
     assert!((lengths[4] - given).abs() < 1e-15);
     let mut tree = Tree::new(&segments, segments.len(), (DVec2::ZERO, DVec2::ONE), (4, 4));
-    let wants = |tree: &Tree, cell: &Cell| {
+    let wants = |tree: &Tree, cell: &TreeCell| {
         let shortest = cell.segments.iter().map(|s| lengths[*s as usize]).fold(f64::INFINITY, f64::min);
         tree.side(cell.level).max_element() > shortest
     };
@@ -114,7 +114,7 @@ mod plate {
     use lofting::base::triangulate_points::points;
     use lofting::mesh::chart::outline::Outline;
     use lofting::mesh::chart::parametric_surface::{ParametricSurface, Spot, UniformSize};
-    use lofting::mesh::tri::build::{Lattice, Task, triangulate};
+    use lofting::mesh::tri::build::{NodePlacement, Task, triangulate};
     use lofting::mesh::tri::optimize::{FINEST, OptimizeSettings};
     use lofting::mesh::tri::shape::quality;
 
@@ -177,8 +177,15 @@ mod plate {
         let inside = |t: &[u32; 3]| tree.holds(t.map(|n| outline.xy[n as usize]).into_iter().sum::<DVec2>() / 3.0);
         let bare = figures(&outline.p, all.corners.iter().copied().filter(inside));
         let mesh = |smooth: usize| {
-            let settings = OptimizeSettings { smooth, beyond: 1.0, fine: FINEST, wanted: 0.8, fair: 1.0, longest: 1.3 };
-            let (field, lattice) = (UniformSize(4.0 * 0.8), Lattice::Tree);
+            let settings = OptimizeSettings {
+                smoothing_rounds: smooth,
+                relaxation: 1.0,
+                still_quality: FINEST,
+                min_quality: 0.8,
+                fair_quality: 1.0,
+                max_length_ratio: 1.3,
+            };
+            let (field, lattice) = (UniformSize(4.0 * 0.8), NodePlacement::Tree);
             let task = Task { chart_surface: &Flat, field: &field, outline: &outline, lattice, settings, most: 100_000, limit_check: None };
             let triangulation = triangulate(&task, &Job::new()).unwrap().unwrap().triangulation;
             figures(&triangulation.p, triangulation.tri.iter().copied())
@@ -213,7 +220,7 @@ fn the_deepest_level_is_told() {
     let segments = closed(&[DVec2::ZERO, DVec2::new(1.0, 0.0), DVec2::new(0.0, 1.0)]);
     let mut tree = Tree::new(&segments, 3, (DVec2::ZERO, DVec2::ONE), (1, 1));
     let at = DVec2::new(1e-9, 1e-9);
-    let holds = |tree: &Tree, cell: &Cell| {
+    let holds = |tree: &Tree, cell: &TreeCell| {
         let low = tree.corner(cell.level, cell.at);
         low.cmple(at).all() && (low + tree.side(cell.level)).cmpgt(at).all()
     };

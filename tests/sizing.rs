@@ -13,7 +13,7 @@ use lofting::geometry::construct::build::line;
 use lofting::mesh::cache::reuse::Reuse;
 use lofting::mesh::pipeline::build::build;
 use lofting::mesh::request::plan::{Place, Refine};
-use lofting::mesh::{Built, Input, Mesh, Method, Outline, Plan};
+use lofting::mesh::{Built, Input, Mesh, MeshLayouts, Method, Plan};
 use lofting::model::topology::Named;
 use lofting::model::{Model, SurfaceId};
 use lofting::network::graph::Input as NetInput;
@@ -362,7 +362,7 @@ fn work_is_the_same_whatever_was_made_before() {
         (plan.settings.method, plan.settings.angle_error) = (Some((method, Origin::NONE)), Some((0.1, Origin::NONE)));
         let input = Input { plan: &plan, model: &scene.model, network: &scene.network, tolerance: &tolerance };
         let work = |reuse: Option<&Reuse>| {
-            let (built, work) = Outline::new(&input).unwrap().measured(&input, reuse, &Job::new());
+            let (built, work) = MeshLayouts::new(&input).unwrap().measured(&input, reuse, &Job::new());
             (built.unwrap().mesh.triangles.len(), work)
         };
         let cold = work(None);

@@ -11,7 +11,7 @@ use lofting::base::triangulate::polygon;
 use lofting::base::triangulate_points::NO_TRIANGLE;
 use lofting::mesh::chart::outline::{Outline, is_left};
 use lofting::mesh::chart::parametric_surface::{ParametricSurface, UniformSize};
-use lofting::mesh::tri::build::{Lattice, Task, initial_triangulation};
+use lofting::mesh::tri::build::{NodePlacement, Task, initial_triangulation};
 use lofting::mesh::tri::shape::Star;
 use lofting::mesh::tri::triangulation::undo::Before;
 use lofting::mesh::tri::triangulation::{Patch, Ring, Triangulation};
@@ -139,7 +139,7 @@ fn plate(surface: &dyn ParametricSurface, random: &mut Random) -> Triangulation 
         chart_surface: surface,
         field: &field,
         outline: &outline,
-        lattice: Lattice::Triangles,
+        lattice: NodePlacement::Triangles,
         settings: CARE,
         most: 10_000,
         limit_check: None,

@@ -13,7 +13,7 @@ use lofting::base::tolerance::Tolerance;
 use lofting::geometry::construct::build::{arc_through, circle, line};
 use lofting::mesh::chart::outline::Outline;
 use lofting::mesh::chart::parametric_surface::{SizeField, UniformSize};
-use lofting::mesh::tri::build::{Lattice, Task, triangulate};
+use lofting::mesh::tri::build::{NodePlacement, Task, triangulate};
 use lofting::mesh::tri::optimize::{FINEST, OptimizeSettings};
 use lofting::model::measure;
 use lofting::network::Chain;
@@ -71,7 +71,7 @@ fn spiked_loops_make_sound_faces_or_say_why() {
             chart_surface: &chart_surface,
             field,
             outline: &outline,
-            lattice: Lattice::Triangles,
+            lattice: NodePlacement::Triangles,
             settings: CARE,
             most: 100_000,
             limit_check: None,
@@ -104,7 +104,7 @@ fn holes_of_any_size_are_kept() {
             chart_surface: &chart_surface,
             field: &UniformSize(size),
             outline: &outline,
-            lattice: Lattice::Triangles,
+            lattice: NodePlacement::Triangles,
             settings: CARE,
             most: 100_000,
             limit_check: None,
@@ -129,12 +129,19 @@ fn a_plate_with_holes_is_better_than_frontal_meshers() {
             add_loop(&mut outline, &chart_surface, &star(DVec2::new(x, y), &vec![r; n], 0.0), 2.0 * size);
         }
     }
-    let settings = OptimizeSettings { smooth: 30, beyond: 1.0, fine: FINEST, wanted: 0.92, fair: 1.0, longest: 1.4 };
+    let settings = OptimizeSettings {
+        smoothing_rounds: 30,
+        relaxation: 1.0,
+        still_quality: FINEST,
+        min_quality: 0.92,
+        fair_quality: 1.0,
+        max_length_ratio: 1.4,
+    };
     let task = Task {
         chart_surface: &chart_surface,
         field: &UniformSize(size),
         outline: &outline,
-        lattice: Lattice::Triangles,
+        lattice: NodePlacement::Triangles,
         settings,
         most: 100_000,
         limit_check: None,

@@ -9,7 +9,7 @@ use crate::base::job::Job;
 use crate::mesh::chart::affine::Chart;
 use crate::mesh::chart::outline::Outline;
 use crate::mesh::chart::parametric_surface::UniformSize;
-use crate::mesh::tri::build::{Lattice, Task, triangulate};
+use crate::mesh::tri::build::{NodePlacement, Task, triangulate};
 use crate::mesh::tri::optimize::{FINEST, OptimizeSettings};
 use crate::surface::{Side, Surface};
 
@@ -73,12 +73,19 @@ fn filled(surface: &Surface, mut outline: Outline, places: &[(f64, f64)], fine: 
     let size = (8.0 * fine / bend).sqrt().clamp(bounds.diagonal() / MOST as f64, bounds.diagonal() / show.least() as f64);
     let flat = surface.is_flat();
     let field = UniformSize(if flat { 4.0 * bounds.diagonal() } else { size });
-    let settings = OptimizeSettings { smooth: 0, beyond: 1.0, fine: FINEST, wanted: 0.0, fair: 1.0, longest: f64::INFINITY };
+    let settings = OptimizeSettings {
+        smoothing_rounds: 0,
+        relaxation: 1.0,
+        still_quality: FINEST,
+        min_quality: 0.0,
+        fair_quality: 1.0,
+        max_length_ratio: f64::INFINITY,
+    };
     let task = Task {
         chart_surface: &chart,
         field: &field,
         outline: &outline,
-        lattice: Lattice::Triangles,
+        lattice: NodePlacement::Triangles,
         settings,
         most: MOST * MOST,
         limit_check: None,

@@ -93,7 +93,7 @@ impl MeshPlan {
         let job = Job::new();
         let scene = along_curves(model.scene.clone(), &mut plan, &model.tolerance, &job)?;
         let input = mesh::Input { plan: &plan, model: &scene.model, network: &scene.network, tolerance: &model.tolerance };
-        let built = mesh::Outline::new(&input)?.build(&input, None, &job)?;
+        let built = mesh::MeshLayouts::new(&input)?.build(&input, None, &job)?;
         let said = built.remarks.iter().map(|remark| remark.fault(&input)).collect();
         Ok((built.mesh, said))
     }

@@ -25,7 +25,7 @@ pub mod verify;
 
 pub use crate::mesh::data::mesh::{FaceRange, Group, Mesh};
 pub use crate::mesh::data::quality::Quality;
-pub use crate::mesh::pipeline::build::{Outline, build};
+pub use crate::mesh::pipeline::build::{MeshLayouts, build};
 pub use crate::mesh::report::built::Built;
 pub use crate::mesh::report::explain::Explanation;
 pub use crate::mesh::request::VERSION;

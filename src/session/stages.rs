@@ -200,7 +200,7 @@ struct Made {
 impl Stages<'_> {
     /// The mesh of a plan: one that was made before, or a new one.
     fn made(&self, input: &mesh::Input, place: Place, job: &Job) -> Result<Made, Fault> {
-        let outline = mesh::Outline::new(input)?;
+        let outline = mesh::MeshLayouts::new(input)?;
         let of = |kept: &KeptMesh| Made { mesh: kept.mesh.clone(), remarks: kept.remarks.clone(), lines: kept.lines.clone() };
         let Some(kept) = &self.kept else {
             let mesh::Built { mesh, explanation, remarks } = outline.build(input, None, job)?;

@@ -26,7 +26,14 @@ impl ParametricSurface for Waves {
 }
 
 /// How triangles are improved.
-pub const CARE: OptimizeSettings = OptimizeSettings { smooth: 20, beyond: 1.0, fine: FINEST, wanted: 0.9, fair: 1.0, longest: 1.25 };
+pub const CARE: OptimizeSettings = OptimizeSettings {
+    smoothing_rounds: 20,
+    relaxation: 1.0,
+    still_quality: FINEST,
+    min_quality: 0.9,
+    fair_quality: 1.0,
+    max_length_ratio: 1.25,
+};
 
 /// Adds a polygon with steps of about a size.
 pub fn add_loop(outline: &mut Outline, chart_surface: &dyn ParametricSurface, corners: &[DVec2], size: f64) {

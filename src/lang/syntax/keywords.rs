@@ -8,7 +8,7 @@
 //! | `snap` | [`network::snap::snap`](crate::network::snap::snap) |
 //! | `surface` | [`Model::build`](crate::model::Model::build) |
 //! | `shell` | [`Model::shell`](crate::model::Model::shell) |
-//! | `mesh`, `on`, `in`, `near`, `group` | [`mesh::Outline::build`](crate::mesh::Outline::build) |
+//! | `mesh`, `on`, `in`, `near`, `group` | [`mesh::MeshLayouts::build`](crate::mesh::MeshLayouts::build) |
 //! | `export` | [`endings::ending_for`](crate::io::formats::endings::ending_for), [`choice::format_for`](crate::io::formats::choice::format_for) |
 //! | `picture` | [`draw::Picture::new`](crate::draw::Picture::new) |
 //! | `tolerance` | [`Tolerance::new`](crate::base::tolerance::Tolerance::new) |

@@ -1,4 +1,4 @@
-//! Free faces taken over from earlier runs: what is made inside a border, under a key of all that it follows from.
+//! Cached free faces: the mesh inside a border, under a key of all that it follows from.
 
 use glam::DVec3;
 
@@ -16,7 +16,7 @@ use crate::mesh::request::decider::{Decider, Tally, Why};
 use crate::mesh::request::limits::Limits;
 use crate::mesh::request::sources::{Body, Source, Sources};
 
-/// What is inside a border.
+/// The mesh inside a border.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CachedFace {
     free: Free,
@@ -68,45 +68,52 @@ impl Plain for Why {
     }
 }
 
-/// Everything that the inside of a face follows from, by content: `odd` are the border nodes that cells of quads leave out,
-/// `rules` what of `near` and `in` reaches it.
-pub(crate) fn key(
-    known: &CacheView,
-    made: &FaceInput,
-    face: &Face,
-    (border, outline): (&FaceBorder, &Outline),
-    (odd, rules): (&[u32], &Sources),
-) -> Digest {
-    let plan = made.input.plan;
-    let mut to = known.on("free face", face.surface).text(env!("CARGO_PKG_VERSION")).number(u64::from(crate::mesh::request::VERSION));
-    made.input.tolerance.hash_into(&mut to);
-    (face.elements, face.method, face.size.0).hash_into(&mut to);
-    (Limits::of(made.input), plan.settings.smooth.map(|n| n.0), (plan.slope(), plan.most_elements)).hash_into(&mut to);
-    (made.wanted.floor, made.wanted.written).hash_into(&mut to);
-    (rules.items(), rules.slope()).hash_into(&mut to);
-    // Numbers of nodes depend on the whole mesh: here by first appearance.
-    let mut order: Vec<(u32, usize)> = border.ids.iter().copied().zip(0..).collect();
-    order.sort_unstable();
-    order.dedup_by_key(|n| n.0);
-    let first = |id: &u32| order.get(order.partition_point(|n| n.0 < *id)).map(|n| n.1);
-    border.ids.iter().map(first).collect::<Vec<_>>().hash_into(&mut to);
-    border.ids.iter().map(|id| odd.binary_search(id).is_ok()).collect::<Vec<_>>().hash_into(&mut to);
-    (&border.uv, &outline.p, (&border.edges, &border.lines)).hash_into(&mut to);
-    to.finish()
+/// All that the inside of a free face follows from.
+pub(crate) struct FaceKey<'a> {
+    pub(crate) face_input: &'a FaceInput<'a>,
+    pub(crate) face: &'a Face,
+    pub(crate) border: &'a FaceBorder,
+    pub(crate) outline: &'a Outline,
+    /// Border nodes that cells of quads leave out.
+    pub(crate) odd: &'a [u32],
+    /// The sources of `near` and `in` that reach the face.
+    pub(crate) rules: &'a Sources,
 }
 
-/// Places and elements, points of inner nodes, what decided the sizes, and the cells.
-type Parts = (Free, Vec<DVec3>, Vec<Decider>, Option<Tally>);
+impl FaceKey<'_> {
+    /// Its digest, by content.
+    pub(crate) fn digest(&self, cache: &CacheView) -> Digest {
+        let Self { face_input, face, border, outline, odd, rules } = self;
+        let plan = face_input.input.plan;
+        let mut to = cache.on("free face", face.surface).text(env!("CARGO_PKG_VERSION")).number(u64::from(crate::mesh::request::VERSION));
+        face_input.input.tolerance.hash_into(&mut to);
+        (face.elements, face.method, face.size.0).hash_into(&mut to);
+        (Limits::of(face_input.input), plan.settings.smooth.map(|n| n.0), (plan.slope(), plan.most_elements)).hash_into(&mut to);
+        (face_input.wanted.floor, face_input.wanted.written).hash_into(&mut to);
+        (rules.items(), rules.slope()).hash_into(&mut to);
+        // Numbers of nodes depend on the whole mesh: here by first appearance.
+        let mut order: Vec<(u32, usize)> = border.ids.iter().copied().zip(0..).collect();
+        order.sort_unstable();
+        order.dedup_by_key(|n| n.0);
+        let first = |id: &u32| order.get(order.partition_point(|n| n.0 < *id)).map(|n| n.1);
+        border.ids.iter().map(first).collect::<Vec<_>>().hash_into(&mut to);
+        border.ids.iter().map(|id| odd.binary_search(id).is_ok()).collect::<Vec<_>>().hash_into(&mut to);
+        (&border.uv, &outline.p, (&border.edges, &border.lines)).hash_into(&mut to);
+        to.finish()
+    }
+}
 
 impl CachedFace {
-    /// Of a face that was made.
+    /// Of a computed face.
     pub fn of(free: &Free, inside: &FreeInside) -> Self {
         Self { free: free.clone(), points: inside.points.clone(), deciders: inside.deciders.clone(), tally: inside.tally }
     }
 
-    /// Its parts for a border of so many nodes; `None` where it is of another one.
-    pub fn parts(&self, border: usize) -> Option<Parts> {
-        (self.free.border == border).then(|| (self.free.clone(), self.points.clone(), self.deciders.clone(), self.tally))
+    /// Its places and elements and its inside, for a border with these edges; `None` where it is of a border with another number of nodes.
+    pub fn parts(&self, border: usize, loops: &[[u32; 2]]) -> Option<(Free, FreeInside)> {
+        let inside =
+            || FreeInside { points: self.points.clone(), loops: loops.to_vec(), deciders: self.deciders.clone(), tally: self.tally };
+        (self.free.border == border).then(|| (self.free.clone(), inside()))
     }
 
     /// As bytes.
@@ -116,20 +123,20 @@ impl CachedFace {
 
     /// From bytes; `None` where they are something else.
     pub fn read(from: &[u8]) -> Option<Self> {
-        let taken: Self = bytes::read(from)?;
-        let nodes = taken.free.uv.len();
+        let face: Self = bytes::read(from)?;
+        let nodes = face.free.uv.len();
         let known = |n: &u32| (*n as usize) < nodes;
-        let sound = taken.free.border + taken.points.len() == nodes
-            && taken.free.triangles.iter().flatten().all(known)
-            && taken.free.quads.iter().flatten().all(known);
-        sound.then_some(taken)
+        let sound = face.free.border + face.points.len() == nodes
+            && face.free.triangles.iter().flatten().all(known)
+            && face.free.quads.iter().flatten().all(known);
+        sound.then_some(face)
     }
 
-    /// Whether it is worth a file.
+    /// Whether it is stored on disk by itself.
     pub fn is_large(&self) -> bool {
-        self.free.triangles.len() + self.free.quads.len() >= LARGE
+        self.free.triangles.len() + self.free.quads.len() >= MIN_STORED_ELEMENTS
     }
 }
 
-/// Elements from which on a face is kept on disk by itself; less is made as fast as it is read.
-const LARGE: usize = 2_000;
+/// Least number of elements of a face that is stored on disk by itself: smaller ones are computed as fast as they are read.
+const MIN_STORED_ELEMENTS: usize = 2_000;

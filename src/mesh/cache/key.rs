@@ -1,6 +1,6 @@
 //! Keys of meshes: everything that the mesher reads, by content.
 //!
-//! Entities are told as seen from the plan (its surfaces in order, their patches from the first), so that numbers given to
+//! Entities are identified by their places in the plan (its surfaces in order, their patches from the first), so that numbers given to
 //! them by a model or network that grew elsewhere do not matter.
 
 use std::collections::BTreeMap;
@@ -14,7 +14,7 @@ use crate::mesh::size::rule_lines::links_of;
 use crate::model::{PatchId, SurfaceId};
 use crate::network::Chain;
 
-/// The key of the mesh that a plan makes on its layouts; `size` is the target size where no rule says another,
+/// The key of the mesh that a plan makes on its layouts; `size` is the target size where no rule sets another,
 /// `surfaces` the digests of the plan's surfaces.
 pub fn of(input: &Input, layouts: &[Layout], size: f64, surfaces: &BTreeMap<SurfaceId, Digest>) -> Digest {
     let mut to = StableHasher::new("mesh").text(env!("CARGO_PKG_VERSION")).number(u64::from(crate::mesh::request::VERSION));
@@ -23,10 +23,10 @@ pub fn of(input: &Input, layouts: &[Layout], size: f64, surfaces: &BTreeMap<Surf
     input.plan.surfaces.iter().enumerate().for_each(|(place, (surface, _))| {
         places.entry(*surface).or_insert(place);
     });
-    let teller = PlanHasher { input, layouts, surfaces, places };
-    teller.plan(size, &mut to);
+    let hasher = PlanHasher { input, layouts, surfaces, places };
+    hasher.plan(size, &mut to);
     layouts.len().hash_into(&mut to);
-    layouts.iter().for_each(|layout| teller.layout(layout, &mut to));
+    layouts.iter().for_each(|layout| hasher.layout(layout, &mut to));
     to.finish()
 }
 
@@ -51,7 +51,7 @@ impl PlanHasher<'_> {
             points,
             settings,
             imprint,
-            // The tracks and faces of the layouts tell it.
+            // The tracks and faces of the layouts determine it.
             glue: _,
             bodies: _,
             rules,
@@ -90,7 +90,7 @@ impl PlanHasher<'_> {
         settings.hash_into(to);
     }
 
-    /// What a rule or group speaks of, and what of the mesh that is.
+    /// The target of a rule or group, and the part of the mesh that it is.
     fn target(&self, target: &Target, to: &mut StableHasher) {
         match target {
             Target::Chain(chain) => self.chain(chain, to),
@@ -116,7 +116,7 @@ impl PlanHasher<'_> {
     }
 
     fn layout(&self, layout: &Layout, to: &mut StableHasher) {
-        // Which edges its tracks are is told by the faces.
+        // The faces determine which edges its tracks are.
         let Layout { faces, parts, pieces, edges: _, of_link, curves, points, creases, meets, lost } = layout;
         faces.len().hash_into(to);
         faces.iter().for_each(|face| self.face(face, to));

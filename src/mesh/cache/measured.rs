@@ -1,4 +1,4 @@
-//! What is measured of single faces, taken over while they do not change.
+//! Chord errors of single faces, cached while the faces do not change.
 
 use crate::base::digest::{Digest, StableHash, StableHasher};
 use crate::base::par;
@@ -9,7 +9,7 @@ use crate::mesh::data::mesh::{FaceRange, Mesh};
 use crate::mesh::deviation::measure;
 
 impl Mesh {
-    /// [`Mesh::chord_error`], with what was measured of the same faces before in `reuse`, and left there.
+    /// [`Mesh::chord_error`] with the cached errors of faces in `reuse`, to which new ones are added.
     pub fn chord_error_again(&self, tolerance: &Tolerance, reuse: Option<&Reuse>) -> Option<f64> {
         let faces: Vec<_> = self.faces.iter().filter(|f| !f.triangles.is_empty() || !f.quads.is_empty()).collect();
         if faces.is_empty() || faces.len() != self.geometries.0.len() {
@@ -35,7 +35,7 @@ impl Mesh {
         if let FaceNodes::Grid(_, frame) = nodes {
             frame.poles.hash_into(&mut to);
         }
-        // Elements follow each other as the shape has them, so their corners tell where its nodes are and which diagonals were taken.
+        // Elements are in the order of the cells: their corners determine the places of nodes and the diagonals.
         let mut corners = |ids: &[u32]| ids.iter().for_each(|n| self.nodes[*n as usize].hash_into(&mut to));
         self.triangles[face.triangles.start as usize..face.triangles.end as usize].iter().for_each(|t| corners(t));
         self.quads[face.quads.start as usize..face.quads.end as usize].iter().for_each(|q| corners(q));

@@ -21,7 +21,7 @@ crate::plain!(Blocks { uv, inner, quads, sides });
 crate::plain!(grid::GridIds { sides, poles, first });
 crate::plain!(LatticeIds { sides, first });
 
-/// A geometry without its surface, which is told by its place in a list.
+/// A geometry with its surface as a number in a list.
 #[derive(Debug)]
 struct PlacedFace {
     surface: u32,
@@ -163,7 +163,7 @@ pub fn read(bytes: &[u8], surfaces: &[&Surface]) -> Option<Built> {
     let (lines, (triangles, quads)): Parts = Plain::take(&mut from)?;
     let (line_mids, (triangle_mids, quad_mids)): Mids = Plain::take(&mut from)?;
     let (faces, groups) = Plain::take(&mut from)?;
-    let (said, remarks) = Plain::take(&mut from)?;
+    let (explained, remarks) = Plain::take(&mut from)?;
     let placed: Vec<PlacedFace> = Plain::take(&mut from)?;
     let geometries = placed.into_iter().map(|PlacedFace { surface, nodes, flipped }| {
         Some(FaceGeometry { surface: (*surfaces.get(surface as usize)?).clone(), nodes, flipped })
@@ -186,7 +186,7 @@ pub fn read(bytes: &[u8], surfaces: &[&Surface]) -> Option<Built> {
         border_error,
     };
     let sound = from.is_empty() && is_sound(&mesh);
-    sound.then(|| Built { mesh, explanation: Explanation { lines: said, ..Explanation::default() }, remarks })
+    sound.then(|| Built { mesh, explanation: Explanation { lines: explained, ..Explanation::default() }, remarks })
 }
 
 /// Every number of a node or an element names one that is there, and geometries are as large as their faces.

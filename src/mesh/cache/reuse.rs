@@ -1,7 +1,6 @@
-//! Parts of meshes that were made before: divisions of segments, and faces with what was measured of them.
+//! The cache of parts of meshes: divisions of segments, and faces with what was measured of them.
 //!
-//! Every part has a key of all that it is made from, by content, so that one that is taken over is bit by bit the one
-//! that would be made.
+//! Every part has a key of all that it follows from, by content: a cached part has the same bits as a computed one.
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -24,19 +23,19 @@ use crate::mesh::request::recall::{RecallFace, RecallSteps};
 use crate::mesh::verify::turned::Turned;
 use crate::model::SurfaceId;
 
-/// Runs that make meshes for which a part is kept that none of them used.
-const RUNS: u64 = 4;
+/// Number of runs that make meshes for which an unused part is kept.
+const MAX_UNUSED_RUNS: u64 = 4;
 
 /// Parts of one kind by their keys.
 ///
-/// What is taken over is charged the work that it took to make: a mesh that is refused for its work is refused whatever was made before.
+/// A cached part is charged the work that it took to compute: a mesh that exceeds its budget exceeds it whatever is cached.
 #[derive(Debug)]
-pub struct Store<T>(Mutex<BTreeMap<Digest, Part<T>>>);
+pub struct Store<T>(Mutex<BTreeMap<Digest, CachedPart<T>>>);
 
 /// A part, the work that it took, and the run that used it last.
 #[derive(Debug)]
-struct Part<T> {
-    made: T,
+struct CachedPart<T> {
+    value: T,
     work: u64,
     run: u64,
 }
@@ -49,22 +48,22 @@ impl<T> Default for Store<T> {
 
 impl<T: Clone> Store<T> {
     fn find(&self, key: Digest, run: u64) -> Option<T> {
-        let (made, work) = {
+        let (value, work) = {
             let mut parts = self.0.lock().unwrap_or_else(PoisonError::into_inner);
             let part = parts.get_mut(&key)?;
             part.run = run;
-            (part.made.clone(), part.work)
+            (part.value.clone(), part.work)
         };
         work::spend(work);
-        Some(made)
+        Some(value)
     }
 
-    fn keep(&self, key: Digest, (made, work): (T, u64), run: u64) {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).insert(key, Part { made, work, run });
+    fn keep(&self, key: Digest, value: T, work: u64, run: u64) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).insert(key, CachedPart { value, work, run });
     }
 
     fn tidy(&self, run: u64) {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).retain(|_, part| part.run + RUNS > run);
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).retain(|_, part| part.run + MAX_UNUSED_RUNS > run);
     }
 }
 
@@ -73,15 +72,15 @@ impl<T: Clone> Store<T> {
 pub struct Inside {
     /// Points of its inner nodes.
     pub nodes: Vec<DVec3>,
-    /// For each cell of a grid of triangles whether its other diagonal was taken.
+    /// For each cell of a grid of triangles whether it has its other diagonal.
     pub diagonals: Vec<bool>,
 }
 
-/// Where large parts are kept longer than a session, by their keys.
+/// Storage for large parts beyond a session, by their keys.
 pub trait Shelf: std::fmt::Debug + Send + Sync {
-    /// The bytes of a face, as they were put.
+    /// The stored bytes of a face.
     fn face(&self, key: Digest) -> Option<Vec<u8>>;
-    /// Keeps the bytes of a face.
+    /// Stores the bytes of a face.
     fn put_face(&self, key: Digest, bytes: &[u8]);
 }
 
@@ -102,21 +101,21 @@ pub struct Reuse {
 }
 
 impl Reuse {
-    /// Looks for large parts on a shelf as well, and leaves them there.
+    /// Adds a shelf for large parts.
     pub fn beside(&mut self, shelf: Option<Arc<dyn Shelf>>) {
         self.shelf = shelf;
     }
 
-    /// The chord error of a face as it was measured before, or as it is now.
+    /// The chord error of a face, cached or measured now.
     pub fn chord(&self, key: Digest, measure: impl FnOnce() -> f64) -> f64 {
         self.chords.find(key, self.run).unwrap_or_else(|| {
             let measured = measure();
-            self.chords.keep(key, (measured, 0), self.run);
+            self.chords.keep(key, measured, 0, self.run);
             measured
         })
     }
 
-    /// Ends a run; when it made meshes, what was not used for long is forgotten.
+    /// Ends a run; after one that made meshes, parts that were unused for some runs are removed.
     pub fn end_run(&mut self) {
         let Self { steps, demands, insides, verdicts, turned, free, chords, shelf: _, run, worked, faces: _ } = self;
         if !std::mem::take(worked.get_mut()) {
@@ -132,13 +131,13 @@ impl Reuse {
         chords.tidy(*run);
     }
 
-    /// Faces whose inside was taken over so far.
+    /// Number of faces whose inside came from the cache so far.
     pub fn faces(&self) -> usize {
         self.faces.load(Ordering::Relaxed)
     }
 }
 
-/// What is known while a mesh is made: parts of others, and the digests of the surfaces.
+/// The cache during the making of one mesh, with the digests of its surfaces.
 #[derive(Clone, Copy, Debug)]
 pub struct CacheView<'a> {
     /// Parts made before, and the place for new ones.
@@ -153,7 +152,7 @@ impl CacheView<'_> {
         StableHasher::new(what).with(&self.surfaces.get(&surface))
     }
 
-    /// The inside of a face, when it was made before.
+    /// The cached inside of a face.
     pub fn inside(&self, key: Digest) -> Option<Arc<Inside>> {
         let found = self.inside_again(key)?;
         self.reuse.faces.fetch_add(1, Ordering::Relaxed);
@@ -161,54 +160,54 @@ impl CacheView<'_> {
         Some(found)
     }
 
-    /// The same within one mesh, which does not count.
+    /// The same for a face that was counted before within the mesh.
     pub fn inside_again(&self, key: Digest) -> Option<Arc<Inside>> {
         self.reuse.insides.find(key, self.reuse.run)
     }
 
-    /// Keeps the inside of a face, which took so much work.
-    pub fn keep_inside(&self, key: Digest, (inside, work): (Inside, u64)) {
+    /// Caches the inside of a face, which took so much work.
+    pub fn keep_inside(&self, key: Digest, inside: Inside, work: u64) {
         self.reuse.worked.store(true, Ordering::Relaxed);
-        self.reuse.insides.keep(key, (Arc::new(inside), work), self.reuse.run);
+        self.reuse.insides.keep(key, Arc::new(inside), work, self.reuse.run);
     }
 
-    /// The inside of a free face, when it was made before.
+    /// The cached inside of a free face.
     pub fn free(&self, key: Digest) -> Option<Arc<CachedFace>> {
         let Reuse { free, shelf, run, .. } = self.reuse;
         let found = free.find(key, *run).or_else(|| {
-            let taken = Arc::new(CachedFace::read(&shelf.as_ref()?.face(key)?)?);
-            // A free face has its own budget, within which it was made.
-            free.keep(key, (taken.clone(), 0), *run);
-            Some(taken)
+            let cached = Arc::new(CachedFace::read(&shelf.as_ref()?.face(key)?)?);
+            // A free face was computed within a budget of its own.
+            free.keep(key, cached.clone(), 0, *run);
+            Some(cached)
         })?;
         self.reuse.faces.fetch_add(1, Ordering::Relaxed);
         self.reuse.worked.store(true, Ordering::Relaxed);
         Some(found)
     }
 
-    /// Keeps the inside of a free face.
-    pub fn keep_free(&self, key: Digest, taken: CachedFace) {
+    /// Caches the inside of a free face.
+    pub fn keep_free(&self, key: Digest, face: CachedFace) {
         self.reuse.worked.store(true, Ordering::Relaxed);
-        if let Some(shelf) = self.reuse.shelf.as_ref().filter(|_| taken.is_large()) {
-            shelf.put_face(key, &taken.bytes());
+        if let Some(shelf) = self.reuse.shelf.as_ref().filter(|_| face.is_large()) {
+            shelf.put_face(key, &face.bytes());
         }
-        self.reuse.free.keep(key, (Arc::new(taken), 0), self.reuse.run);
+        self.reuse.free.keep(key, Arc::new(face), 0, self.reuse.run);
     }
 
     /// The key of a face: its surface, where its nodes lie, and the points of its border. `border` are the points of all
     /// nodes on borders.
-    pub fn face(&self, ready: &FaceMesh, border: &[DVec3], even: f64) -> Digest {
-        let mut to = self.on("face", ready.surface);
-        ready.geometry.nodes.hash_places(&mut to);
-        (ready.elements, even).hash_into(&mut to);
+    pub fn face(&self, face_mesh: &FaceMesh, border: &[DVec3], even: f64) -> Digest {
+        let mut to = self.on("face", face_mesh.surface);
+        face_mesh.geometry.nodes.hash_places(&mut to);
+        (face_mesh.elements, even).hash_into(&mut to);
         let mut points = |ids: &[u32]| ids.iter().for_each(|id| border.get(*id as usize).hash_into(&mut to));
-        match &ready.geometry.nodes {
+        match &face_mesh.geometry.nodes {
             FaceNodes::Grid(_, frame) => frame.sides.iter().for_each(|side| points(side)),
             FaceNodes::Lattice(_, frame) => frame.sides.iter().for_each(|side| points(side)),
-            FaceNodes::Blocks(_, places) => points(&places[ready.inner as usize..]),
+            FaceNodes::Blocks(_, places) => points(&places[face_mesh.inner as usize..]),
             FaceNodes::Free(_, places) => points(places),
         }
-        if let FaceNodes::Grid(_, frame) = &ready.geometry.nodes {
+        if let FaceNodes::Grid(_, frame) = &face_mesh.geometry.nodes {
             frame.poles.hash_into(&mut to);
         }
         to.finish()
@@ -234,57 +233,66 @@ impl FaceNodes {
     }
 }
 
-/// The steps found before under the key, or what `make` finds; failures are not kept.
+/// The cached steps under the key, or the computed ones; failures are not cached.
 pub fn cached_if_valid(
-    known: Option<&CacheView>,
+    cache: Option<&CacheView>,
     key: impl FnOnce(&CacheView) -> Digest,
     make: impl FnOnce() -> Result<u32>,
 ) -> Result<u32> {
-    let Some(known) = known else { return make() };
-    let (key, run) = (work::uncharged(|| key(known)), known.reuse.run);
-    if let Some(found) = known.reuse.steps.find(key, run) {
+    let Some(cache) = cache else { return make() };
+    let (key, run) = (work::uncharged(|| key(cache)), cache.reuse.run);
+    if let Some(found) = cache.reuse.steps.find(key, run) {
         return Ok(found);
     }
     let (made, work) = work::measured(make);
-    let made = made?;
-    known.reuse.steps.keep(key, (made, work), run);
-    Ok(made)
+    let steps = made?;
+    cache.reuse.steps.keep(key, steps, work, run);
+    Ok(steps)
 }
 
-/// Takes over steps of segments, where something is known.
-pub fn recall_steps<'a>(known: Option<&'a CacheView<'a>>) -> Box<RecallSteps<'a>> {
-    Box::new(move |key, make| cached_if_valid(known, |_| key(), make))
+/// The lookup of steps of segments in the cache, where there is one.
+pub fn recall_steps<'a>(cache: Option<&'a CacheView<'a>>) -> Box<RecallSteps<'a>> {
+    Box::new(move |key, make| cached_if_valid(cache, |_| key(), make))
 }
 
-/// Takes over what was found of faces under their keys, where something is known; `what` begins the key.
+/// A cache with the keys of the faces of a mesh.
+#[derive(Clone, Copy, Debug)]
+pub struct KeyedFaces<'a> {
+    /// The cache.
+    pub cache: &'a CacheView<'a>,
+    /// Keys by the faces of the layout.
+    pub keys: &'a [Digest],
+}
+
+/// The lookup of results of faces under their keys, where there is a cache; `what` begins the key.
 pub fn recall_face<'a, T: Clone + Send + 'a>(
-    keyed: Option<(&'a CacheView<'a>, &'a [Digest])>,
+    keyed: Option<KeyedFaces<'a>>,
     what: &'static str,
     store: impl Fn(&Reuse) -> &Store<T> + Copy + Sync + 'a,
 ) -> Box<RecallFace<'a, T>> {
     Box::new(move |k, hash, make| {
         let key = |_: &CacheView| {
-            let mut to = StableHasher::new(what).with(&keyed.map(|keyed| keyed.1[k]));
+            let mut to = StableHasher::new(what).with(&keyed.map(|keyed| keyed.keys[k]));
             hash(&mut to);
             to.finish()
         };
-        recalled(keyed.map(|keyed| keyed.0), store, key, make)
+        recalled(keyed.map(|keyed| keyed.cache), store, key, make)
     })
 }
 
-/// What was found before under the key, or what `make` gives; without anything known no key is made.
+/// The cached value under the key, or the computed one; without a cache no key is computed.
 pub fn recalled<T: Clone>(
-    known: Option<&CacheView>,
+    cache: Option<&CacheView>,
     store: impl Fn(&Reuse) -> &Store<T>,
     key: impl FnOnce(&CacheView) -> Digest,
     make: impl FnOnce() -> T,
 ) -> T {
-    let Some(known) = known else { return make() };
-    let (key, run) = (work::uncharged(|| key(known)), known.reuse.run);
-    if let Some(found) = store(known.reuse).find(key, run) {
+    let Some(cache) = cache else { return make() };
+    let (key, run) = (work::uncharged(|| key(cache)), cache.reuse.run);
+    if let Some(found) = store(cache.reuse).find(key, run) {
         return found;
     }
-    let (made, work) = work::measured(make);
-    store(known.reuse).keep(key, (made.clone(), work), run);
-    made
+    let (value, work) = work::measured(make);
+    store(cache.reuse).keep(key, value.clone(), work, run);
+    value
 }

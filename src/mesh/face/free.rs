@@ -9,18 +9,26 @@ use crate::mesh::chart::face_input::{FaceInput, prepared};
 use crate::mesh::chart::outline::Outline;
 use crate::mesh::data::face_geometry::Free;
 use crate::mesh::data::face_mesh::{FaceMesh, FreeInside};
+use crate::mesh::quad::quad_face;
 use crate::mesh::request::methods::Elements;
-use crate::mesh::tri::fit::fitting;
+use crate::mesh::tri::triangle_fit::{FittedFace, fitted};
 use crate::mesh::tri::trouble::fault;
 
 /// Fills the face: of quads, or of triangles that keep its limits.
-pub(crate) fn grown(made: &FaceInput, face: &Face, (border, chart, outline): (FaceBorder, Chart, Outline), job: &Job) -> Result<FaceMesh> {
+pub(crate) fn filled(
+    face_input: &FaceInput,
+    face: &Face,
+    border: FaceBorder,
+    chart: &Chart,
+    outline: &Outline,
+    job: &Job,
+) -> Result<FaceMesh> {
     if face.elements != Elements::Triangles && face.method.of_triangles().is_none() {
-        return crate::mesh::quad::fit::prepare(made, face, border, (&chart, &outline), job);
+        return quad_face::prepare(face_input, face, border, chart, outline, job);
     }
-    let (triangulation, deciders, tally) = match fitting(made, face, &chart, &outline, job)? {
+    let FittedFace { triangulation, deciders, tally } = match fitted(face_input, face, chart, outline, job)? {
         Ok(fitted) => fitted,
-        Err(trouble) => return Err(fault(made, face, &border, trouble)),
+        Err(trouble) => return Err(fault(face_input, face, &border, trouble)),
     };
     // Rings are fixed, but no part of the border.
     let fixed = border.uv.len();
@@ -32,5 +40,5 @@ pub(crate) fn grown(made: &FaceInput, face: &Face, (border, chart, outline): (Fa
     uv.extend(triangulation.xy[fixed..].iter().map(|xy| chart.uv(*xy)));
     let points = triangulation.p[fixed..].to_vec();
     let free = Free { uv, border: fixed, triangles, ..Free::default() };
-    Ok(prepared(made, face, free, border.ids, FreeInside { points, loops: border.edges, deciders, tally }))
+    Ok(prepared(face_input, face, free, border.ids, FreeInside { points, loops: border.edges, deciders, tally }))
 }

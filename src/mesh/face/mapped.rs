@@ -96,10 +96,10 @@ fn prepare_triangle(input: &Input, layout: &Layout, nodes: &Nodes, face: &Face) 
 /// E704 when faces for which only quads are wanted got triangles.
 pub fn refuse_triangles(input: &Input, layout: &Layout, prepared: &[FaceMesh]) -> Result<()> {
     let mut places = Vec::new();
-    for (face, ready) in layout.faces.iter().zip(prepared) {
-        if ready.elements == Elements::Quads && ready.triangles > 0 {
+    for (face, face_mesh) in layout.faces.iter().zip(prepared) {
+        if face_mesh.elements == Elements::Quads && face_mesh.triangles > 0 {
             let pole = face.sides.iter().find_map(|s| s.pole).map_or_else(|| middle(input, face), |p| layout.pieces.junctions[p]);
-            places.push((input.model.surfaces[face.surface.index()].surface.origin(), ready.triangles, pole));
+            places.push((input.model.surfaces[face.surface.index()].surface.origin(), face_mesh.triangles, pole));
         }
     }
     if places.is_empty() { Ok(()) } else { Err(MeshFault::QuadsImpossible { mesh: input.plan.origin, places }.into()) }

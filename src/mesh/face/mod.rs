@@ -1,7 +1,7 @@
-//! One face from its border to its elements, mapped or free, and faces that fall together.
+//! One face from its border to its elements, mapped or free, and coincident faces.
 
-pub mod foresee;
+pub mod coincident;
 pub mod free;
+pub mod map_quality;
 pub mod mapped;
-pub mod together;
 pub mod twins;

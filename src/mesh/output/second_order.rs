@@ -57,23 +57,23 @@ pub fn add(input: &Input, layout: &Layout, nodes: &Nodes, prepared: &[FaceMesh],
             });
         }
     }
-    for (ready, (triangles, quads)) in prepared.iter().zip(element_ranges(prepared)) {
-        let surface = &input.model.surfaces[ready.surface.index()].surface;
-        let places = Places(&ready.geometry.nodes);
-        let mut made: Vec<Edge> = Vec::new();
-        let free = matches!(ready.geometry.nodes, FaceNodes::Free(..));
+    for (face_mesh, (triangles, quads)) in prepared.iter().zip(element_ranges(prepared)) {
+        let surface = &input.model.surfaces[face_mesh.surface.index()].surface;
+        let places = Places(&face_mesh.geometry.nodes);
+        let mut new: Vec<InnerEdge> = Vec::new();
+        let free = matches!(face_mesh.geometry.nodes, FaceNodes::Free(..));
         let corner = &mesh.nodes;
         let mut mid = |a: u32, b: u32, uv: &dyn Fn(u32, u32) -> (f64, f64)| {
             table.mid(a, b, || {
                 let ends = free.then(|| ([a, b].map(|n| corner[n as usize]), [uv(a, a), uv(b, b)]));
-                made.push(Edge { uv: uv(a, b), ends });
+                new.push(InnerEdge { uv: uv(a, b), ends });
                 next += 1;
                 next - 1
             })
         };
         // Elements of a face come in the order of its cells.
         places.each(
-            ready,
+            face_mesh,
             &mesh.triangles[triangles],
             |corners, uv, is_quad| {
                 job::poll();
@@ -87,14 +87,14 @@ pub fn add(input: &Input, layout: &Layout, nodes: &Nodes, prepared: &[FaceMesh],
             },
             &mesh.quads[quads],
         );
-        let points: Vec<DVec3> = par::map(made.len(), |k| middle_of(surface, &made[k]));
+        let points: Vec<DVec3> = par::map(new.len(), |k| middle_of(surface, &new[k]));
         mesh.nodes.extend(points);
     }
     mesh.line_mids = mesh.lines.iter().map(|l| table.mid(l[0], l[1], || l[0])).collect();
 }
 
 /// An edge inside a face.
-struct Edge {
+struct InnerEdge {
     /// The middle of its ends in (u, v).
     uv: (f64, f64),
     /// Of free faces its ends, and their places.
@@ -104,16 +104,16 @@ struct Edge {
 /// Two points and their places.
 type Ends = ([DVec3; 2], [(f64, f64); 2]);
 
-/// How far a mid node may be from the middle of its edge, over the length of the edge, before it is looked for in space.
-const ASIDE: f64 = 0.15;
+/// Largest distance of a mid node from the middle of its edge, over the length of the edge; beyond it the foot in space is taken.
+const MAX_MIDDLE_DISTANCE: f64 = 0.15;
 
-/// The mid node of an edge: on the surface in the middle of (u, v). Beside a pole that says nothing on a free face, and the
-/// foot of the middle in space is taken.
-fn middle_of(surface: &Surface, edge: &Edge) -> DVec3 {
+/// The mid node of an edge: on the surface in the middle of (u, v). Where that is far from the edge, as beside a pole of a free face, the
+/// foot of the middle in space.
+fn middle_of(surface: &Surface, edge: &InnerEdge) -> DVec3 {
     let plain = surface.point(edge.uv.0, edge.uv.1);
     let Some(([a, b], places)) = edge.ends else { return plain };
     let middle = 0.5 * (a + b);
-    if plain.distance(middle) <= ASIDE * a.distance(b) {
+    if plain.distance(middle) <= MAX_MIDDLE_DISTANCE * a.distance(b) {
         return plain;
     }
     let range = |closed: bool| if closed { (f64::NEG_INFINITY, f64::INFINITY) } else { (0.0, 1.0) };
@@ -126,12 +126,12 @@ fn middle_of(surface: &Surface, edge: &Edge) -> DVec3 {
 /// (u, v) of the corners of elements, cell by cell.
 struct Places<'a>(&'a FaceNodes);
 
-/// Gives (u, v) in the middle of the edge between two nodes of a cell.
+/// (u, v) in the middle of the edge between two nodes of a cell.
 type Middle<'a> = &'a dyn Fn(u32, u32) -> (f64, f64);
 
 impl Places<'_> {
     /// Visits the elements of a face in the order of the mesh: corner nodes, and where the middles of their edges lie.
-    fn each(&self, ready: &FaceMesh, triangles: &[[u32; 3]], mut visit: impl FnMut(&[u32], Middle, bool), quads: &[[u32; 4]]) {
+    fn each(&self, face_mesh: &FaceMesh, triangles: &[[u32; 3]], mut visit: impl FnMut(&[u32], Middle, bool), quads: &[[u32; 4]]) {
         let (mut t, mut q) = (triangles.iter(), quads.iter());
         if let FaceNodes::Grid(grid, frame) = self.0 {
             let (nu, nv) = grid.size();
@@ -142,9 +142,9 @@ impl Places<'_> {
                     let uv = at.map(|(i, j)| grid.uv(i, j));
                     let middle = |a: u32, b: u32| cell_middle(&of, &uv, a, b);
                     let pole = (0..4).any(|k| of[k] == of[(k + 1) % 4]);
-                    let count = if ready.quads > 0 || pole { 1 } else { 2 };
+                    let count = if face_mesh.quads > 0 || pole { 1 } else { 2 };
                     for _ in 0..count {
-                        if ready.quads > 0 && !pole || ready.triangles == 0 {
+                        if face_mesh.quads > 0 && !pole || face_mesh.triangles == 0 {
                             if let Some(corners) = q.next() {
                                 visit(corners, &middle, true);
                             }
@@ -180,7 +180,7 @@ fn mean(a: (f64, f64), b: (f64, f64)) -> (f64, f64) {
 /// The middle of an edge of a cell; from a pole straight along the line that ends there.
 fn cell_middle(of: &[u32; 4], uv: &[(f64, f64); 4], a: u32, b: u32) -> (f64, f64) {
     let places = |id: u32| (0..4).filter(move |k| of[*k] == id);
-    // A pole stands for two corners of its cell: the one next to the other node is meant.
+    // A pole is two corners of its cell: the one next to the other node counts.
     let pairs = places(a).flat_map(|x| places(b).map(move |y| (x, y)));
     let near = pairs.min_by_key(|(x, y)| usize::from((x + 1) % 4 != *y && (y + 1) % 4 != *x));
     near.map_or((0.0, 0.0), |(x, y)| mean(uv[x], uv[y]))

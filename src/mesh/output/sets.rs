@@ -1,4 +1,4 @@
-//! Named sets: one per surface, then those asked for.
+//! Named sets: one per surface, then the requested ones.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -20,6 +20,16 @@ pub type FaceElements = ((PatchId, SurfaceId), std::ops::Range<u32>, std::ops::R
 /// Where the elements of all faces are.
 pub type Ranges = Vec<FaceElements>;
 
+/// A part of a mesh: its layout, the nodes on it, and the number of its first node in the mesh.
+pub struct PartNodes<'a> {
+    /// Segments.
+    pub layout: &'a Layout,
+    /// Nodes on them.
+    pub nodes: &'a Nodes,
+    /// First node.
+    pub offset: u32,
+}
+
 /// Ascending, each once.
 fn sorted(mut list: Vec<u32>) -> Vec<u32> {
     list.sort_unstable();
@@ -35,7 +45,7 @@ pub fn names(input: &Input) -> BTreeMap<SurfaceId, String> {
         let of = |id: SurfaceId| surface(id).surface.part_of().iter().chain(std::iter::once(&surface(id).surface));
         of(a).any(|x| of(b).any(|y| x.is(y)))
     };
-    let taken: BTreeSet<&str> = input.plan.surfaces.iter().map(|(id, _)| surface(*id).name.as_str()).collect();
+    let used: BTreeSet<&str> = input.plan.surfaces.iter().map(|(id, _)| surface(*id).name.as_str()).collect();
     let mut found: BTreeMap<SurfaceId, String> = BTreeMap::new();
     let mut alike: BTreeMap<&str, Vec<SurfaceId>> = BTreeMap::new();
     for (id, _) in &input.plan.surfaces {
@@ -50,7 +60,7 @@ pub fn names(input: &Input) -> BTreeMap<SurfaceId, String> {
             None => {
                 let base = if own.is_empty() { "surface" } else { own };
                 let numbers = known.len()..;
-                let mut free = numbers.map(|n| format!("{base}[{n}]")).filter(|name| !taken.contains(name.as_str()));
+                let mut free = numbers.map(|n| format!("{base}[{n}]")).filter(|name| !used.contains(name.as_str()));
                 free.next().unwrap_or_default()
             }
         };
@@ -61,11 +71,11 @@ pub fn names(input: &Input) -> BTreeMap<SurfaceId, String> {
 }
 
 /// The set of one surface.
-pub fn of_surface(mesh: &Mesh, ranges: &Ranges, (surface, name): (SurfaceId, &str)) -> Group {
+pub fn of_surface(mesh: &Mesh, ranges: &Ranges, surface: SurfaceId, name: &str) -> Group {
     of_faces(mesh, ranges, name, &Target::Surface(surface))
 }
 
-/// The set of the faces that a target speaks of.
+/// The set of the faces of a target.
 fn of_faces(mesh: &Mesh, ranges: &Ranges, name: &str, target: &Target) -> Group {
     let mut group = Group { name: name.to_owned(), ..Group::default() };
     for (_, triangles, quads) in ranges.iter().filter(|r| target.faces(r.0.0, r.0.1).is_some()) {
@@ -104,7 +114,7 @@ fn nodes_of(mesh: &Mesh, group: &Group) -> Vec<u32> {
 /// The set of a `group`: its surfaces, the nodes along its curves and edges with their line elements, its points.
 ///
 /// Fails with E672 where a curve ends inside a segment of a border, where no node is: its set would hold a part of it.
-pub fn of_request(input: &Input, parts: &[(&Layout, &Nodes, u32)], mesh: &Mesh, ranges: &Ranges, request: &GroupRequest) -> Result<Group> {
+pub fn of_request(input: &Input, parts: &[PartNodes], mesh: &Mesh, ranges: &Ranges, request: &GroupRequest) -> Result<Group> {
     let mut group = Group { name: request.name.clone(), ..Group::default() };
     let mut nodes = Vec::new();
     for member in &request.members {
@@ -117,7 +127,7 @@ pub fn of_request(input: &Input, parts: &[(&Layout, &Nodes, u32)], mesh: &Mesh, 
             }
             Target::Chain(_) | Target::Edge(_) => {
                 let mut steps: Vec<(u32, u32)> = Vec::new();
-                for (layout, of, offset) in parts {
+                for PartNodes { layout, nodes: of, offset } in parts {
                     let on = layout.on(input, member);
                     if let Target::Chain(chain) = member
                         && let Some(at) = beside::cut_short(input, layout, chain, &on)
@@ -148,7 +158,7 @@ pub fn of_request(input: &Input, parts: &[(&Layout, &Nodes, u32)], mesh: &Mesh, 
 /// Mid nodes of some edges of elements, which are given by their corners, the lower one first, ascending.
 fn mids_of(mesh: &Mesh, steps: &[(u32, u32)]) -> Vec<u32> {
     let mut found = Vec::new();
-    let mut look = |corners: &[u32], mids: &[u32]| {
+    let mut collect = |corners: &[u32], mids: &[u32]| {
         for (k, mid) in mids.iter().enumerate() {
             let (a, b) = (corners[k], corners[(k + 1) % corners.len()]);
             if steps.binary_search(&(a.min(b), a.max(b))).is_ok() {
@@ -156,9 +166,9 @@ fn mids_of(mesh: &Mesh, steps: &[(u32, u32)]) -> Vec<u32> {
             }
         }
     };
-    job::looking(mesh.triangles.iter().zip(&mesh.triangle_mids)).for_each(|(corners, mids)| look(corners, mids));
-    job::looking(mesh.quads.iter().zip(&mesh.quad_mids)).for_each(|(corners, mids)| look(corners, mids));
-    mesh.lines.iter().zip(&mesh.line_mids).for_each(|(corners, mid)| look(corners, &[*mid]));
+    job::looking(mesh.triangles.iter().zip(&mesh.triangle_mids)).for_each(|(corners, mids)| collect(corners, mids));
+    job::looking(mesh.quads.iter().zip(&mesh.quad_mids)).for_each(|(corners, mids)| collect(corners, mids));
+    mesh.lines.iter().zip(&mesh.line_mids).for_each(|(corners, mid)| collect(corners, &[*mid]));
     found
 }
 

@@ -10,7 +10,7 @@ use crate::mesh::data::face_geometry::FaceGeometries;
 use crate::mesh::data::face_mesh::{self, FaceMesh};
 use crate::mesh::data::mesh::{FaceRange, Mesh};
 use crate::mesh::output::{lines, second_order};
-use crate::mesh::pipeline::attempt::{Done, attempt};
+use crate::mesh::pipeline::attempt::{FinishedMesh, attempt};
 use crate::mesh::report::border_error;
 use crate::mesh::report::explain::Explanation;
 use crate::mesh::request::fault::MeshFault;
@@ -18,7 +18,7 @@ use crate::mesh::request::input::Input;
 use crate::mesh::size::sizing::Sizing;
 
 /// The mesh of some faces, with what is needed to name its parts.
-pub struct Part {
+pub struct MeshPart {
     /// The mesh, without groups.
     pub mesh: Mesh,
     /// Surface and element ranges of its faces.
@@ -33,26 +33,26 @@ pub struct Part {
     pub sizing: Sizing,
 }
 
-/// Times that the steps of the border of a face are halved because triangles beside it lean.
-const LEANING: u32 = 3;
+/// Largest number of times that the steps of the border of a face are halved because triangles beside it are tilted against the surface.
+const MAX_TILT_HALVINGS: u32 = 3;
 
-/// Divides what is laid out, refines until every limit is kept, and fills. `size` is the target size where no rule says
+/// Divides what is laid out, refines until every limit is kept, and fills. `size` is the target size where no rule sets
 /// another, model units.
-pub fn assemble(input: &Input, mut layout: Layout, size: f64, (known, job): (Option<&CacheView>, &Job)) -> Result<Part> {
+pub fn assemble(input: &Input, mut layout: Layout, size: f64, cache: Option<&CacheView>, job: &Job) -> Result<MeshPart> {
     inside::place(input, &mut layout);
     debug_assert_eq!(layout.check(input), Ok(()));
     loop {
-        match attempt(input, &mut layout, size, (known, job)) {
+        match attempt(input, &mut layout, size, cache, job) {
             Ok(done) => return Ok(finish(input, layout, done)),
-            // What was only made freely for better angles has a map.
+            // Faces that are free only for better angles have a map.
             Err(_) if keep_maps(&mut layout) => job.go_on()?,
-            Err(fault) if halve_leaning(input, &mut layout, &fault) => job.go_on()?,
+            Err(fault) if halve_tilted(input, &mut layout, &fault) => job.go_on()?,
             Err(fault) => return Err(fault),
         }
     }
 }
 
-/// Takes back that faces are made freely because their maps are sharp; whether there were any.
+/// Maps the faces again that are free because their maps are sharp; whether there were any.
 fn keep_maps(layout: &mut Layout) -> bool {
     let mut any = false;
     for face in layout.faces.iter_mut().filter(|face| matches!(face.uneven, Some(Uneven::Sharp(_)))) {
@@ -62,14 +62,14 @@ fn keep_maps(layout: &mut Layout) -> bool {
     any
 }
 
-/// Halves the steps of the borders of faces made with as few triangles as may be that do not keep a limit: what stands beside a
-/// long step of a border leans over the surface, however small it is. Whether there were any.
-fn halve_leaning(input: &Input, layout: &mut Layout, fault: &Fault) -> bool {
+/// Halves the steps of the borders of faces made with as few triangles as may be that do not keep a limit: an element
+/// beside a long step of a border is tilted against the surface, however small it is. Whether there were any.
+fn halve_tilted(input: &Input, layout: &mut Layout, fault: &Fault) -> bool {
     let Some(MeshFault::NotReached { surface, .. }) = fault.of() else { return false };
     let of = |face: &Face| input.model.surfaces[face.surface.index()].surface.origin();
     let mut any = false;
     for face in layout.faces.iter_mut().filter(|face| of(face) == *surface) {
-        if face.method.is_coarse() && face.halved < LEANING {
+        if face.method.is_coarse() && face.halved < MAX_TILT_HALVINGS {
             face.halved += 1;
             any = true;
         }
@@ -78,14 +78,14 @@ fn halve_leaning(input: &Input, layout: &mut Layout, fault: &Fault) -> bool {
 }
 
 /// Ranges, line elements and mid nodes.
-fn finish(input: &Input, layout: Layout, done: Done) -> Part {
-    let Done { nodes, prepared, sizing, mut mesh, explanation } = done;
+fn finish(input: &Input, layout: Layout, done: FinishedMesh) -> MeshPart {
+    let FinishedMesh { nodes, prepared, sizing, mut mesh, explanation } = done;
     let mut ranges = crate::mesh::output::sets::Ranges::new();
-    for ((ready, face), own) in prepared.iter().zip(&layout.faces).zip(face_mesh::element_ranges(&prepared)) {
+    for ((face_mesh, face), own) in prepared.iter().zip(&layout.faces).zip(face_mesh::element_ranges(&prepared)) {
         let [triangles, quads] = [own.0, own.1].map(|range| range.start as u32..range.end as u32);
-        let name = input.model.surfaces[ready.surface.index()].name.clone();
+        let name = input.model.surfaces[face_mesh.surface.index()].name.clone();
         mesh.faces.push(FaceRange { name, triangles: triangles.clone(), quads: quads.clone(), lines: 0..0 });
-        ranges.push(((face.patch, ready.surface), triangles, quads));
+        ranges.push(((face.patch, face_mesh.surface), triangles, quads));
     }
     lines::add(input, &layout, &nodes, &mut mesh);
     if input.plan.settings.order() == 2 {
@@ -93,5 +93,5 @@ fn finish(input: &Input, layout: Layout, done: Done) -> Part {
     }
     mesh.border_error = border_error::of_free_borders(&layout, &nodes);
     mesh.geometries = FaceGeometries(prepared.into_iter().map(FaceMesh::into_chart).collect());
-    Part { mesh, ranges, explanation, layout, nodes, sizing }
+    MeshPart { mesh, ranges, explanation, layout, nodes, sizing }
 }

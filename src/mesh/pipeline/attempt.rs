@@ -1,4 +1,4 @@
-//! The mesh of some faces, divided and filled, and divided anew for as long as something asks for it.
+//! The mesh of some faces, divided and filled, and divided anew for as long as a retry demands it.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,7 @@ use crate::base::job::Job;
 use crate::base::par;
 use crate::mesh::border::layout::{Face, Layout, Uneven, closes};
 use crate::mesh::border::nodes::Nodes;
-use crate::mesh::cache::reuse::{CacheView, recall_face, recall_steps, recalled};
+use crate::mesh::cache::reuse::{CacheView, KeyedFaces, recall_face, recall_steps, recalled};
 use crate::mesh::chart::face_input::FaceInput;
 use crate::mesh::data::face_mesh::{self, FaceMesh, FaceRanges};
 use crate::mesh::data::mesh::Mesh;
@@ -17,9 +17,9 @@ use crate::mesh::divide::row_demand::{self, RowDemand};
 use crate::mesh::divide::strips;
 use crate::mesh::divide::too_large::refuse_counts;
 use crate::mesh::divide::verdict::{self, Finished, Verdict};
-use crate::mesh::face::together::{self, Asked};
-use crate::mesh::face::{foresee, twins};
-use crate::mesh::pipeline::fill::{fill, free, number, prepare};
+use crate::mesh::face::coincident::{self, Demand};
+use crate::mesh::face::{map_quality, twins};
+use crate::mesh::pipeline::fill::{Refill, fill, free, number, prepare};
 use crate::mesh::report::blame;
 use crate::mesh::report::explain::Explanation;
 use crate::mesh::request::input::Input;
@@ -30,32 +30,37 @@ use crate::mesh::size::remark::Remark;
 use crate::mesh::size::sizing::{MOST, Sizing};
 use crate::mesh::size::uneven;
 use crate::mesh::tri::too_large::refuse_large;
-use crate::mesh::verify::{face_check, turned};
+use crate::mesh::verify::{face_check, face_fault, turned};
 use crate::surface::Domain;
 use crate::surface::core::power_form::PowerForm;
 
-/// Refinements of whole faces before a limit counts as out of reach.
-const ROUNDS: usize = 40;
-/// Times borders are divided anew where they come too near to each other.
-const MAX_SEARCHES: usize = 24;
-/// Times that the steps of the border of a face that closes on itself are halved for it.
-const HALVED: u32 = 6;
+/// How often a mesh is divided anew.
+struct AttemptSettings {
+    /// Largest number of refinements of whole faces before a limit counts as out of reach.
+    max_refinements: usize,
+    /// Largest number of searches for borders that come too near to each other.
+    max_border_searches: usize,
+    /// Largest number of times that the steps of the border of a face that closes on itself are halved.
+    max_halvings: u32,
+    /// Largest number of surfaces whose power forms are computed once for borders, faces and bounds: each takes many times the memory of
+    /// its net.
+    max_power_forms: usize,
+}
 
-/// Surfaces whose power forms are kept for their borders, faces and bounds: each takes many times the room of its net.
-const HELD: usize = 64;
+const ATTEMPT: AttemptSettings = AttemptSettings { max_refinements: 40, max_border_searches: 24, max_halvings: 6, max_power_forms: 64 };
 
-/// Power forms of the surfaces of faces that are surely made freely under limits.
-fn held(input: &Input, layout: &Layout, limits: &Limits) -> Vec<PowerForm> {
+/// The power forms of the surfaces of faces that are certainly free under limits.
+fn power_forms(input: &Input, layout: &Layout, limits: &Limits) -> Vec<PowerForm> {
     if limits.chord.is_none() && limits.angle.is_none() {
         return Vec::new();
     }
     let surface = |face: &Face| &input.model.surfaces[face.surface.index()].surface;
     let free = |face: &&Face| face.method.is_free() || surface(face).domain() == Domain::Loop;
-    layout.faces.iter().filter(free).take(HELD).filter_map(|face| surface(face).power_form()).collect()
+    layout.faces.iter().filter(free).take(ATTEMPT.max_power_forms).filter_map(|face| surface(face).power_form()).collect()
 }
 
-/// Everything but the layout.
-pub(crate) struct Done {
+/// The finished mesh of some faces, without their layout.
+pub(crate) struct FinishedMesh {
     pub nodes: Nodes,
     pub prepared: Vec<FaceMesh>,
     pub sizing: Sizing,
@@ -65,48 +70,48 @@ pub(crate) struct Done {
 
 /// Why a mesh is divided anew.
 enum Retry {
-    /// Mapped faces have pieces of border as short as a row would be, or lie beside free faces with such: they are made freely.
+    /// Mapped faces have pieces of border as short as a row would be, or lie beside free faces with such: they become free.
     UnevenBorders(Vec<(usize, Uneven)>),
     /// Borders of free faces come nearer to each other than their steps: these become shorter there.
     NearBorders(Vec<Narrow>),
-    /// Faces are foreseen to be better made freely: with the reason and the elements foreseen.
+    /// Faces whose maps are predicted to be worse than free meshes: with the reason and the predicted number of elements.
     BetterFree(Vec<(usize, Uneven, u64)>),
-    /// Faces made freely turned out worse than their maps.
+    /// Free faces that turned out worse than their maps.
     BetterMapped(Vec<usize>),
-    /// A face breaks a limit: its rows ask for more steps.
+    /// A face breaks a limit: its rows demand more steps.
     BrokenLimits,
-    /// Faces have elements or edges in the same nodes.
-    FallTogether(Asked),
+    /// Faces have elements or edges between the same nodes.
+    Coincident(Demand),
     /// Elements of a face from one of its sides to another are the same ones: the steps of its border are halved.
     ClosesOnItself(usize),
 }
 
 /// How a round ends.
-enum Step {
-    /// The mesh keeps everything.
-    Done(Box<Done>),
+enum RoundResult {
+    /// The mesh keeps all limits.
+    Done(Box<FinishedMesh>),
     /// It is divided anew; these were the counts of segments and rows.
     Again(Retry, Vec<u32>),
 }
 
-/// Counts with the nodes that they make.
-struct Division {
+/// Counts of segments and rows, with the nodes on the segments.
+struct DividedSegments {
     /// Of segments and rows.
     counts: Vec<u32>,
     /// The strip of each.
     strip: Vec<usize>,
     nodes: Nodes,
-    /// The counts are those that were checked last: nothing moved, so only a size is missed, where a written count overrules it.
+    /// The counts are those that were checked last: only a size is missed, where a written count overrules it.
     is_settled: bool,
 }
 
-/// What is known of a mesh between two rounds.
+/// The state of a mesh between two rounds.
 struct Attempt<'a> {
     input: &'a Input<'a>,
     layout: &'a mut Layout,
-    /// Where no rule says another, model units.
+    /// Target size where no rule sets another one, model units.
     size: f64,
-    known: Option<&'a CacheView<'a>>,
+    cache: Option<&'a CacheView<'a>>,
     job: &'a Job,
     limits: Limits,
     sizing: Sizing,
@@ -120,22 +125,22 @@ struct Attempt<'a> {
     /// Searches for near borders that are left, and the counts at which steps were shortened last.
     searches: usize,
     shortened: Vec<u32>,
-    /// Work that the counts so far were worth.
-    worth: u64,
-    /// How often each face was asked for more because it falls together with another one.
-    asked: BTreeMap<usize, u32>,
+    /// Work charged for the counts so far.
+    charged_work: u64,
+    /// Number of demands on each face because it shares nodes with another one.
+    demands_on: BTreeMap<usize, u32>,
 }
 
 /// Divides, refines and fills.
-pub(crate) fn attempt(input: &Input, layout: &mut Layout, size: f64, (known, job): (Option<&CacheView>, &Job)) -> Result<Done> {
+pub(crate) fn attempt(input: &Input, layout: &mut Layout, size: f64, cache: Option<&CacheView>, job: &Job) -> Result<FinishedMesh> {
     let limits = Limits::of(input);
-    let _held = held(input, layout, &limits);
-    let (sizing, demands, relations) = begin(input, layout, size, (known, job))?;
+    let _power_forms = power_forms(input, layout, &limits);
+    let (sizing, demands, relations) = begin(input, layout, size, cache, job)?;
     let mut attempt = Attempt {
         input,
         layout,
         size,
-        known,
+        cache,
         job,
         limits,
         sizing,
@@ -144,16 +149,16 @@ pub(crate) fn attempt(input: &Input, layout: &mut Layout, size: f64, (known, job
         narrow: Vec::new(),
         checked: Vec::new(),
         verdicts: Vec::new(),
-        searches: MAX_SEARCHES,
+        searches: ATTEMPT.max_border_searches,
         shortened: Vec::new(),
-        worth: 0,
-        asked: BTreeMap::new(),
+        charged_work: 0,
+        demands_on: BTreeMap::new(),
     };
-    for _ in 0..ROUNDS + MAX_SEARCHES + (2 + HALVED as usize) * attempt.layout.faces.len() {
+    for _ in 0..ATTEMPT.max_refinements + ATTEMPT.max_border_searches + (2 + ATTEMPT.max_halvings as usize) * attempt.layout.faces.len() {
         job.go_on()?;
         match attempt.round()? {
-            Step::Done(done) => return Ok(*done),
-            Step::Again(retry, counts) => attempt.retry(retry, counts)?,
+            RoundResult::Done(done) => return Ok(*done),
+            RoundResult::Again(retry, counts) => attempt.retry(retry, counts)?,
         }
     }
     Err(attempt.relations.out_of_reach(input, attempt.layout, &attempt.verdicts))
@@ -161,82 +166,82 @@ pub(crate) fn attempt(input: &Input, layout: &mut Layout, size: f64, (known, job
 
 impl Attempt<'_> {
     /// Counts of all segments and rows, and the nodes on segments.
-    fn divide(&mut self) -> Result<Division> {
+    fn divide(&mut self) -> Result<DividedSegments> {
         let (input, layout) = (self.input, &*self.layout);
         let mut unknown = self.sizing.segments(layout);
         unknown.extend(self.relations.rows());
         let (counts, strip) = strips::solve(&unknown, &self.relations.list, MOST, input.tolerance.point)
             .map_err(|conflict| self.relations.fault(input, layout, &self.sizing, &conflict))?;
         self.relations.refuse_odd_borders(input, layout, &self.sizing, &counts)?;
-        allow(refuse_counts(input, layout, &self.sizing, &self.relations.of_face, &counts)?, &mut self.worth);
+        allow(refuse_counts(input, layout, &self.sizing, &self.relations.of_face, &counts)?, &mut self.charged_work);
         let fractions = |segment, count| self.sizing.fractions(segment, count);
         let nodes = Nodes::new(layout, &counts[..layout.pieces.segments.len()], fractions);
-        Ok(Division { is_settled: counts == self.checked, counts, strip, nodes })
+        Ok(DividedSegments { is_settled: counts == self.checked, counts, strip, nodes })
     }
 
-    /// Divides and fills once, until something asks for another division.
-    fn round(&mut self) -> Result<Step> {
-        let Division { counts, strip, nodes, is_settled } = self.divide()?;
-        let (input, known, job) = (self.input, self.known, self.job);
+    /// Divides and fills once, or up to the first reason for another division.
+    fn round(&mut self) -> Result<RoundResult> {
+        let DividedSegments { counts, strip, nodes, is_settled } = self.divide()?;
+        let (input, cache, job) = (self.input, self.cache, self.job);
         let uneven = uneven::find(self.layout, &nodes, input.tolerance.point, &self.sizing);
         if !uneven.is_empty() {
-            return Ok(Step::Again(Retry::UnevenBorders(uneven), counts));
+            return Ok(RoundResult::Again(Retry::UnevenBorders(uneven), counts));
         }
         let border = nodes.points(self.layout, &input.plan.points);
-        let made = FaceInput { input, layout: &*self.layout, nodes: &nodes, points: &border, wanted: &self.sizing.wanted };
-        // Shorter steps that leave all counts as they are help no more.
+        let face_input = FaceInput { input, layout: &*self.layout, nodes: &nodes, points: &border, wanted: &self.sizing.wanted };
+        // Shorter steps that leave all counts unchanged have no further effect.
         if self.searches > 0 && counts != self.shortened {
             self.searches -= 1;
-            let found = proximity::find(&made);
+            let found = proximity::find(&face_input);
             if !found.is_empty() {
-                return Ok(Step::Again(Retry::NearBorders(found), counts));
+                return Ok(RoundResult::Again(Retry::NearBorders(found), counts));
             }
         }
-        let mut prepared = prepare(&made, &self.relations, &counts)?;
-        let foreseen = foresee::find(&made, &prepared);
-        let better = foresee::better_free(&made, &self.sizing, &foreseen, &prepared);
+        let mut prepared = prepare(&face_input, &self.relations, &counts)?;
+        let predicted = map_quality::find(&face_input, &prepared);
+        let better = map_quality::better_free(&face_input, &self.sizing, &predicted, &prepared);
         if !better.is_empty() {
-            return Ok(Step::Again(Retry::BetterFree(better), counts));
+            return Ok(RoundResult::Again(Retry::BetterFree(better), counts));
         }
-        let key = |known: &CacheView| prepared.iter().map(|ready| known.face(ready, &border, input.tolerance.point)).collect();
-        let keys: Vec<Digest> = known.map(key).unwrap_or_default();
-        let keyed = known.map(|known| (known, keys.as_slice()));
-        let mut mesh = fill(input, &border, &prepared, (keyed, false), job)?;
+        let key = |cache: &CacheView| prepared.iter().map(|face_mesh| cache.face(face_mesh, &border, input.tolerance.point)).collect();
+        let keys: Vec<Digest> = cache.map(key).unwrap_or_default();
+        let keyed = cache.map(|cache| KeyedFaces { cache, keys: &keys });
+        let mut mesh = fill(input, &border, &prepared, keyed, Refill::First, job)?;
         if !is_settled {
             let recall = recall_face(keyed, "verdict", |reuse| &reuse.verdicts);
             let finished = finished(self.layout, &self.sizing, &prepared, &self.demands);
             self.verdicts = verdict::check(input, &self.limits, &mesh, &finished, &recall);
             if !self.verdicts.iter().all(|v| v.keeps_limits() && v.keeps_size()) {
-                return Ok(Step::Again(Retry::BrokenLimits, counts));
+                return Ok(RoundResult::Again(Retry::BrokenLimits, counts));
             }
         }
         turned::refuse_turned(input, &prepared, &mesh, &recall_face(keyed, "turned", |reuse| &reuse.turned))?;
         if self.layout.faces.iter().any(|face| face.free) {
-            free(&made, &mut prepared, (known, job))?;
-            mesh = fill(input, &border, &prepared, (keyed, true), job)?;
-            let back = foresee::better_mapped(&made, &prepared, &mesh);
+            free(&face_input, &mut prepared, cache, job)?;
+            mesh = fill(input, &border, &prepared, keyed, Refill::Again, job)?;
+            let back = map_quality::better_mapped(&face_input, &prepared, &mesh);
             if !back.is_empty() {
-                return Ok(Step::Again(Retry::BetterMapped(back), counts));
+                return Ok(RoundResult::Again(Retry::BetterMapped(back), counts));
             }
-            if twins::divide(&made, &mut prepared, &mesh) {
-                number(&made, &mut prepared);
-                mesh = fill(input, &border, &prepared, (keyed, true), job)?;
+            if twins::divide(&face_input, &mut prepared, &mesh) {
+                number(&face_input, &mut prepared);
+                mesh = fill(input, &border, &prepared, keyed, Refill::Again, job)?;
             }
             turned::refuse_concave(input, &prepared, &mesh)?;
         }
-        let together = together::part(&made, &prepared, (&mut mesh, &self.limits));
-        if let Some(first) = together.first() {
-            return match together::ask(self.layout, &prepared, &together, &mut self.asked) {
-                Some(asked) => Ok(Step::Again(Retry::FallTogether(asked), counts)),
-                None => Err(together::fault(input, self.layout, &mesh, first)),
+        let coincidences = coincident::resolve(&face_input, &prepared, &mut mesh, &self.limits);
+        if let Some(first) = coincidences.first() {
+            return match coincident::demand(self.layout, &prepared, &coincidences, &mut self.demands_on) {
+                Some(demand) => Ok(RoundResult::Again(Retry::Coincident(demand), counts)),
+                None => Err(coincident::fault(input, self.layout, &mesh, first)),
             };
         }
-        if let Some(face) = self.closing_on_itself(&nodes, &prepared, &mesh)? {
-            return Ok(Step::Again(Retry::ClosesOnItself(face), counts));
+        if let Some(face) = self.closing_on_itself(&face_input, &prepared, &mesh)? {
+            return Ok(RoundResult::Again(Retry::ClosesOnItself(face), counts));
         }
-        self.layout.faces.iter_mut().zip(&foreseen).for_each(|(face, found)| face.foreseen = found.map(|found| found.angle));
-        let made = FaceInput { input, layout: &*self.layout, nodes: &nodes, points: &border, wanted: &self.sizing.wanted };
-        let blames = blame::of_faces(&made, (&self.sizing, &foreseen), &prepared, &mesh);
+        self.layout.faces.iter_mut().zip(&predicted).for_each(|(face, found)| face.foreseen = found.map(|found| found.angle));
+        let face_input = FaceInput { input, layout: &*self.layout, nodes: &nodes, points: &border, wanted: &self.sizing.wanted };
+        let blames = blame::of_faces(&face_input, (&self.sizing, &predicted), &prepared, &mesh);
         let sharp: Vec<Remark> = blames.iter().filter_map(|seen| seen.sharp.clone()).collect();
         let mut sizing = std::mem::take(&mut self.sizing);
         sizing.sharp = sharp.into_iter().reduce(Remark::sharper);
@@ -244,20 +249,20 @@ impl Attempt<'_> {
         sizing.effects.mark_inside(input, &prepared);
         let mut explanation = Explanation::new(input, self.layout, &sizing, &prepared, (&counts, &strip));
         explanation.lines.iter_mut().zip(blames).for_each(|(line, blame)| line.push_str(&blame.line));
-        Ok(Step::Done(Box::new(Done { nodes, prepared, sizing, mesh, explanation })))
+        Ok(RoundResult::Done(Box::new(FinishedMesh { nodes, prepared, sizing, mesh, explanation })))
     }
 
     /// A face that closes on itself and has to have shorter steps for it; fails for what is wrong with a face otherwise.
-    fn closing_on_itself(&self, nodes: &Nodes, prepared: &[FaceMesh], mesh: &Mesh) -> Result<Option<usize>> {
-        let layout = &*self.layout;
-        let found = face_check::unsound(self.input, (layout, nodes), prepared, mesh);
+    fn closing_on_itself(&self, face_input: &FaceInput, prepared: &[FaceMesh], mesh: &Mesh) -> Result<Option<usize>> {
+        let layout = face_input.layout;
+        let found = face_check::unsound(face_input, prepared, mesh);
         let coarse = |f: &usize| {
             let face = &layout.faces[*f];
-            closes(face) && face.halved < HALVED && foresee::is_twisted(&prepared[*f], mesh)
+            closes(face) && face.halved < ATTEMPT.max_halvings && map_quality::is_twisted(&prepared[*f], mesh)
         };
         let Some((f, defect)) = found else { return Ok((0..prepared.len()).find(coarse)) };
-        if !closes(&layout.faces[f]) || layout.faces[f].halved == HALVED {
-            return Err(face_check::fault(self.input, (layout, nodes, &layout.faces[f]), (&prepared[f], defect), mesh));
+        if !closes(&layout.faces[f]) || layout.faces[f].halved == ATTEMPT.max_halvings {
+            return Err(face_fault::fault(face_input, &layout.faces[f], &prepared[f], defect, mesh));
         }
         Ok(Some(f))
     }
@@ -267,7 +272,7 @@ impl Attempt<'_> {
         match retry {
             Retry::NearBorders(found) => {
                 self.narrow.extend(found);
-                self.sizing = Sizing::new(self.input, self.layout, self.size, &recall_steps(self.known), &self.narrow)?;
+                self.sizing = Sizing::new(self.input, self.layout, self.size, &recall_steps(self.cache), &self.narrow)?;
                 self.shortened = counts;
                 return Ok(());
             }
@@ -276,13 +281,13 @@ impl Attempt<'_> {
                 self.checked = counts;
                 return Ok(());
             }
-            Retry::FallTogether(Asked::Rows(rows)) => {
+            Retry::Coincident(Demand::Rows(rows)) => {
                 self.relations.raise(&rows, &counts);
                 self.checked = Vec::new();
                 return Ok(());
             }
-            // The layout has changed where it was asked.
-            Retry::FallTogether(Asked::Anew) => {}
+            // The layout has changed already.
+            Retry::Coincident(Demand::NewLayout) => {}
             Retry::UnevenBorders(faces) => faces.into_iter().for_each(|(f, why)| self.layout.faces[f].uneven = Some(why)),
             Retry::BetterFree(faces) => {
                 for (f, why, elements) in faces {
@@ -292,29 +297,30 @@ impl Attempt<'_> {
             Retry::BetterMapped(faces) => faces.into_iter().for_each(|f| self.layout.faces[f].keep_map()),
             Retry::ClosesOnItself(f) => self.layout.faces[f].halved += 1,
         }
-        (self.sizing, self.demands, self.relations) = begin(self.input, self.layout, self.size, (self.known, self.job))?;
+        (self.sizing, self.demands, self.relations) = begin(self.input, self.layout, self.size, self.cache, self.job)?;
         self.narrow.clear();
         (self.checked, self.shortened) = (Vec::new(), Vec::new());
         Ok(())
     }
 }
 
-/// Sizes of everything, what rows want, and the equations between counts.
+/// Sizes of all segments, demands of rows, and the equations between counts.
 fn begin(
     input: &Input,
     layout: &mut Layout,
     size: f64,
-    (known, job): (Option<&CacheView>, &Job),
+    cache: Option<&CacheView>,
+    job: &Job,
 ) -> Result<(Sizing, Vec<[RowDemand; 2]>, Relations)> {
-    let sizing = Sizing::new(input, layout, size, &recall_steps(known), &[])?;
+    let sizing = Sizing::new(input, layout, size, &recall_steps(cache), &[])?;
     refuse_large(input, layout, &sizing, job)?;
-    let demands = demands(input, layout, &sizing, &Limits::of(input), known);
+    let demands = demands(input, layout, &sizing, &Limits::of(input), cache);
     let relations = Relations::new(layout, &demands);
     Ok((sizing, demands, relations))
 }
 
-/// What the rows of each face want; nothing where all is written and no limit is set.
-fn demands(input: &Input, layout: &Layout, sizing: &Sizing, limits: &Limits, known: Option<&CacheView>) -> Vec<[RowDemand; 2]> {
+/// The demands of the rows of each face; none where all counts are written and no limit is set.
+fn demands(input: &Input, layout: &Layout, sizing: &Sizing, limits: &Limits, cache: Option<&CacheView>) -> Vec<[RowDemand; 2]> {
     par::map(layout.faces.len(), |f| {
         let face = &layout.faces[f];
         if face.free {
@@ -325,9 +331,9 @@ fn demands(input: &Input, layout: &Layout, sizing: &Sizing, limits: &Limits, kno
             return [RowDemand::default(); 2];
         }
         let patch = &input.model.patches[face.patch.index()];
-        let key = |known: &CacheView| known.on("demands", face.surface).with(&(patch.u, patch.v, (face.size.0, limits))).finish();
+        let key = |cache: &CacheView| cache.on("demands", face.surface).with(&(patch.u, patch.v, (face.size.0, limits))).finish();
         let surface = &input.model.surfaces[face.surface.index()].surface;
-        recalled(known, |reuse| &reuse.demands, key, || row_demand::demands(surface, patch.u, patch.v, face.size.0, limits))
+        recalled(cache, |reuse| &reuse.demands, key, || row_demand::demands(surface, patch.u, patch.v, face.size.0, limits))
     })
 }
 

@@ -12,37 +12,36 @@ use crate::base::limits::WORK_OF_A_SURFACE;
 use crate::base::origin::Origin;
 use crate::base::work::{self, Budget, Exceeded};
 use crate::mesh::border::layout::Layout;
-use crate::mesh::border::nodes::Nodes;
 use crate::mesh::cache::key;
 use crate::mesh::cache::reuse::{CacheView, Reuse};
 use crate::mesh::data::mesh::Group;
 use crate::mesh::output::sets;
-use crate::mesh::pipeline::assemble::{Part, assemble};
+use crate::mesh::pipeline::assemble::{MeshPart, assemble};
 use crate::mesh::report::built::Built;
 use crate::mesh::request::input::Input;
 use crate::mesh::request::work::{too_many, too_much_work, work_on};
 use crate::mesh::size::remark::Remark;
-use crate::mesh::verify::contact_bodies::{self, Body};
+use crate::mesh::verify::contact_bodies::{self, MeshBody};
 use crate::mesh::verify::contacts;
 use crate::model::{Model, PatchId, SurfaceId};
 use crate::surface::{Domain, Surface};
 
-/// Samples along each direction of a patch when the box of what is meshed is taken.
+/// Number of samples along each direction of a patch for the box of what is meshed.
 const SAMPLES: usize = 9;
-/// Share of the box's diagonal that is the size when none is given.
-const SHARE: f64 = 0.05;
+/// Size over the diagonal of that box when no size is given.
+const DEFAULT_SIZE_SHARE: f64 = 0.05;
 
 /// Makes the mesh. Warnings and notes go to `sink`.
 ///
-/// Fails as [`Outline::new`] and [`Outline::build`] do.
+/// Fails as [`MeshLayouts::new`] and [`MeshLayouts::build`] do.
 pub fn build(input: &Input, job: &Job, sink: &mut Vec<Fault>) -> Result<Built> {
-    let built = Outline::new(input)?.build(input, None, job)?;
+    let built = MeshLayouts::new(input)?.build(input, None, job)?;
     sink.extend(built.remarks.iter().map(|remark| remark.fault(input)));
     Ok(built)
 }
 
-/// What a mesh stands on, laid out; nothing is divided yet. Enough to tell whether a mesh that was made before is this one.
-pub struct Outline {
+/// The layouts of a mesh before any segment is divided. Their key identifies the mesh.
+pub struct MeshLayouts {
     /// The model with nets in parameters in which they run evenly, where some do not.
     evened: Option<Model>,
     layouts: Vec<Layout>,
@@ -50,7 +49,7 @@ pub struct Outline {
     surfaces: BTreeMap<SurfaceId, Digest>,
 }
 
-impl Outline {
+impl MeshLayouts {
     /// Lays out the faces, curves and points of a plan.
     ///
     /// Fails with E230 for methods of a later version.
@@ -97,25 +96,25 @@ impl Outline {
         self.measured(input, reuse, job).0
     }
 
-    /// The same, with the work that it took but for that of its free faces; as much as it may where it took more.
+    /// The same, with the work that it took, without that of its free faces; the budget where it took more.
     pub fn measured(mut self, input: &Input, reuse: Option<&Reuse>, job: &Job) -> (Result<Built>, u64) {
         let evened = self.evened.take();
         let input = &within(input, &evened);
         let surfaces = &input.plan.surfaces;
         let most = work_on(surfaces.iter().map(|(s, _)| &input.model.surfaces[s.index()].surface));
-        // The borders of each face are looked at before any element is made.
+        // The borders of each face are examined before any element is made.
         let most = most.saturating_add(surfaces.len() as u64 * WORK_OF_A_SURFACE);
         let within = Budget::new(most).within(|| work::measured(|| self.built(input, reuse, job)));
         within.unwrap_or_else(|Exceeded| (Err(too_much_work(input, Origin::NONE)), most))
     }
 
     fn built(self, input: &Input, reuse: Option<&Reuse>, job: &Job) -> Result<Built> {
-        let known = reuse.map(|reuse| CacheView { reuse, surfaces: &self.surfaces });
-        let (mut parts, mut made): (Vec<Part>, u64) = (Vec::new(), 0);
+        let cache = reuse.map(|reuse| CacheView { reuse, surfaces: &self.surfaces });
+        let (mut parts, mut elements): (Vec<MeshPart>, u64) = (Vec::new(), 0);
         for layout in self.layouts {
-            parts.push(assemble(input, layout, self.size, (known.as_ref(), job))?);
-            made += parts.last().map_or(0, |part| (part.mesh.triangles.len() + part.mesh.quads.len()) as u64);
-            if made > input.plan.most_elements {
+            parts.push(assemble(input, layout, self.size, cache.as_ref(), job)?);
+            elements += parts.last().map_or(0, |part| (part.mesh.triangles.len() + part.mesh.quads.len()) as u64);
+            if elements > input.plan.most_elements {
                 return Err(too_many(input.plan, input.plan.size_origin(), None));
             }
         }
@@ -125,16 +124,16 @@ impl Outline {
             remarks = first.sizing.remarks();
             remarks.extend(first.layout.lost.iter().chain(others.iter().flat_map(|part| &part.layout.lost)).copied().map(Remark::Lost));
             let mut leaves = Vec::with_capacity(parts.len());
-            // Faces that were asked not to share nodes touch as they were asked to.
+            // Faces without shared nodes, where the plan says so, touch on purpose.
             for part in parts.iter().filter(|_| input.plan.settings.conforming()) {
                 let (touches, own) = contacts::find(input, &part.layout, &part.nodes, &part.mesh);
                 contacts::refuse_overlaps(input, &touches)?;
                 leaves.push(own);
                 remarks.extend(touches.into_iter().map(Remark::Touch));
             }
-            // Bodies were asked not to share nodes, and may touch; none is where another one is.
+            // Bodies share no nodes and may touch; none overlaps another one.
             if input.plan.settings.conforming() {
-                let bodies: Vec<Body> = parts.iter().map(|part| Body { layout: &part.layout, mesh: &part.mesh }).collect();
+                let bodies: Vec<MeshBody> = parts.iter().map(|part| MeshBody { layout: &part.layout, mesh: &part.mesh }).collect();
                 remarks.extend(contact_bodies::find(input, &bodies, leaves).into_iter().map(Remark::Touch));
             }
         }
@@ -152,7 +151,7 @@ fn within<'a>(input: &Input<'a>, evened: &'a Option<Model>) -> Input<'a> {
 /// Parts one after the other as one mesh, with its named sets.
 ///
 /// Fails with E672 for a set that would hold a part of what it is of.
-fn merge(input: &Input, mut parts: Vec<Part>) -> Result<Built> {
+fn merge(input: &Input, mut parts: Vec<MeshPart>) -> Result<Built> {
     let mut built = Built::default();
     let mut ranges: sets::Ranges = Vec::new();
     let mut offsets = Vec::new();
@@ -169,12 +168,13 @@ fn merge(input: &Input, mut parts: Vec<Part>) -> Result<Built> {
         built.mesh.append(mesh);
     }
     (built.mesh.name, built.mesh.order) = (input.plan.name.clone(), input.plan.settings.order());
-    let named: Vec<(&Layout, &Nodes, u32)> = parts.iter().zip(offsets).map(|(p, offset)| (&p.layout, &p.nodes, offset)).collect();
+    let named: Vec<sets::PartNodes> =
+        parts.iter().zip(offsets).map(|(p, offset)| sets::PartNodes { layout: &p.layout, nodes: &p.nodes, offset }).collect();
     let mut groups = Vec::new();
     let mut done: BTreeSet<SurfaceId> = BTreeSet::new();
     for (surface, _) in &input.plan.surfaces {
         if done.insert(*surface) {
-            groups.push(sets::of_surface(&built.mesh, &ranges, (*surface, &names[surface])));
+            groups.push(sets::of_surface(&built.mesh, &ranges, *surface, &names[surface]));
         }
     }
     for request in &input.plan.groups {
@@ -239,7 +239,8 @@ fn default_size(input: &Input, patches: &[(PatchId, bool)]) -> f64 {
         around = around.union(Box3::of(points));
     }
     let diagonal = around.diagonal();
-    // What is to be sparing has its chord error for a size.
-    let share = if input.plan.settings.method().is_coarse() && input.plan.settings.chord_error.is_some() { 1.0 } else { SHARE };
+    // Methods with as few elements as possible take the size from the chord error alone.
+    let share =
+        if input.plan.settings.method().is_coarse() && input.plan.settings.chord_error.is_some() { 1.0 } else { DEFAULT_SIZE_SHARE };
     if diagonal > 0.0 { share * diagonal } else { 1.0 }
 }

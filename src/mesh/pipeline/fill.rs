@@ -1,4 +1,4 @@
-//! Faces of a mesh made ready, and filled: nodes and elements in the arrays of the mesh.
+//! Faces of a mesh prepared, and filled: nodes and elements in the arrays of the mesh.
 
 use glam::DVec3;
 
@@ -6,7 +6,7 @@ use crate::base::digest::Digest;
 use crate::base::fault::Result;
 use crate::base::job::Job;
 use crate::base::{par, work};
-use crate::mesh::cache::reuse::{CacheView, Inside};
+use crate::mesh::cache::reuse::{CacheView, Inside, KeyedFaces};
 use crate::mesh::chart::face_input::{FaceInput, empty};
 use crate::mesh::data::face_geometry::FaceNodes;
 use crate::mesh::data::face_mesh::FaceMesh;
@@ -18,62 +18,62 @@ use crate::mesh::request::input::Input;
 use crate::mesh::request::work::too_many;
 
 /// Places and ids of the nodes of all faces; free ones are left empty, since nothing else depends on what is in them.
-pub(crate) fn prepare(made: &FaceInput, relations: &Relations, counts: &[u32]) -> Result<Vec<FaceMesh>> {
-    let layout = made.layout;
+pub(crate) fn prepare(face_input: &FaceInput, relations: &Relations, counts: &[u32]) -> Result<Vec<FaceMesh>> {
+    let layout = face_input.layout;
     let mut prepared = par::try_map(layout.faces.len(), |f| {
         if layout.faces[f].free {
-            return Ok(empty(made, &layout.faces[f]));
+            return Ok(empty(face_input, &layout.faces[f]));
         }
         let rows: Vec<u32> = relations.of_face[f].iter().map(|r| counts[*r]).collect();
-        mapped::prepare(made.input, layout, made.nodes, &layout.faces[f], &rows)
+        mapped::prepare(face_input.input, layout, face_input.nodes, &layout.faces[f], &rows)
     })?;
-    refuse_triangles(made.input, layout, &prepared)?;
-    number(made, &mut prepared);
+    refuse_triangles(face_input.input, layout, &prepared)?;
+    number(face_input, &mut prepared);
     Ok(prepared)
 }
 
-/// Free faces that are made before their elements are counted against what a mesh may have.
-const AT_A_TIME: usize = 64;
+/// Number of free faces that are made before their elements are compared with the largest number of a mesh.
+const BATCH_SIZE: usize = 64;
 
 /// Makes the free faces; E217 for more elements than a mesh may have.
-pub(crate) fn free(made: &FaceInput, prepared: &mut [FaceMesh], (known, job): (Option<&CacheView>, &Job)) -> Result<()> {
-    let faces = &made.layout.faces;
+pub(crate) fn free(face_input: &FaceInput, prepared: &mut [FaceMesh], cache: Option<&CacheView>, job: &Job) -> Result<()> {
+    let faces = &face_input.layout.faces;
     let which: Vec<usize> = (0..faces.len()).filter(|f| faces[*f].free).collect();
     job.expect(which.len() as u64);
     let mut total: u64 = (0..faces.len()).filter(|f| !faces[*f].free).map(|f| prepared[f].triangles + prepared[f].quads).sum();
-    for some in which.chunks(AT_A_TIME) {
-        let ready = par::try_map(some.len(), |k| {
+    for some in which.chunks(BATCH_SIZE) {
+        let face_mesh = par::try_map(some.len(), |k| {
             job.go_on()?;
-            let ready = free_face::prepare(made, &faces[some[k]], (known, job));
+            let face_mesh = free_face::prepare(face_input, &faces[some[k]], cache, job);
             job.advance(1);
-            ready
+            face_mesh
         })?;
-        for (f, ready) in some.iter().zip(ready) {
-            total += ready.triangles + ready.quads;
-            prepared[*f] = ready;
+        for (f, face_mesh) in some.iter().zip(face_mesh) {
+            total += face_mesh.triangles + face_mesh.quads;
+            prepared[*f] = face_mesh;
         }
-        if total > made.input.plan.most_elements {
-            return Err(too_many(made.input.plan, made.input.plan.size_origin(), None));
+        if total > face_input.input.plan.most_elements {
+            return Err(too_many(face_input.input.plan, face_input.input.plan.size_origin(), None));
         }
     }
-    number(made, prepared);
+    number(face_input, prepared);
     Ok(())
 }
 
 /// Ids of the inner nodes, face by face.
-pub(crate) fn number(made: &FaceInput, prepared: &mut [FaceMesh]) {
-    let mut first = made.nodes.total;
-    for ready in prepared.iter_mut() {
-        ready.number(first);
-        first += ready.inner as u32;
+pub(crate) fn number(face_input: &FaceInput, prepared: &mut [FaceMesh]) {
+    let mut first = face_input.nodes.total;
+    for face_mesh in prepared.iter_mut() {
+        face_mesh.number(first);
+        first += face_mesh.inner as u32;
     }
 }
 
 /// One face being filled: its parts of the arrays.
 struct Fill<'a> {
-    ready: &'a FaceMesh,
+    face_mesh: &'a FaceMesh,
     key: Option<(&'a CacheView<'a>, Digest)>,
-    again: bool,
+    refill: Refill,
     nodes: &'a mut [DVec3],
     triangles: &'a mut [[u32; 3]],
     quads: &'a mut [[u32; 4]],
@@ -82,32 +82,47 @@ struct Fill<'a> {
 
 impl Fill<'_> {
     fn fill(&mut self, input: &Input, border: &[DVec3]) {
-        let found = |(known, key): (&CacheView, Digest)| if self.again { known.inside_again(key) } else { known.inside(key) };
+        let found = |(cache, key): (&CacheView, Digest)| match self.refill {
+            Refill::First => cache.inside(key),
+            Refill::Again => cache.inside_again(key),
+        };
         if let Some(inside) = self.key.and_then(found)
             && inside.nodes.len() == self.nodes.len()
         {
             self.nodes.copy_from_slice(&inside.nodes);
-            return self.ready.fill(&inside.diagonals, self.triangles, self.quads);
+            return self.face_mesh.fill(&inside.diagonals, self.triangles, self.quads);
         }
-        let surface = &input.model.surfaces[self.ready.surface.index()].surface;
+        let surface = &input.model.surfaces[self.face_mesh.surface.index()].surface;
         let (diagonals, work) = work::measured(|| {
-            self.ready.points(surface, self.nodes);
-            let (first, own) = (self.ready.first, &*self.nodes);
+            self.face_mesh.points(surface, self.nodes);
+            let (first, own) = (self.face_mesh.first, &*self.nodes);
             let node = |id: u32| if id < first { border[id as usize] } else { own[(id - first) as usize] };
-            self.ready.diagonals(surface, &node, input.tolerance.point)
+            self.face_mesh.diagonals(surface, &node, input.tolerance.point)
         });
-        self.ready.fill(&diagonals, self.triangles, self.quads);
-        if let Some((known, key)) = self.key {
-            known.keep_inside(key, (Inside { nodes: self.nodes.to_vec(), diagonals }, work));
+        self.face_mesh.fill(&diagonals, self.triangles, self.quads);
+        if let Some((cache, key)) = self.key {
+            cache.keep_inside(key, Inside { nodes: self.nodes.to_vec(), diagonals }, work);
         }
     }
 }
 
-/// Keys of the faces before free ones have their insides, and whether the mapped ones were filled under them just now.
-type Keyed<'a> = (Option<(&'a CacheView<'a>, &'a [Digest])>, bool);
+/// Whether the mapped faces of a mesh were filled before under the same keys: then they do not count as taken from the cache.
+#[derive(Clone, Copy)]
+pub(crate) enum Refill {
+    First,
+    Again,
+}
 
-/// All nodes and elements; faces and rows of large faces on several threads.
-pub(crate) fn fill(input: &Input, border: &[DVec3], prepared: &[FaceMesh], (keyed, again): Keyed, job: &Job) -> Result<Mesh> {
+/// All nodes and elements; faces and rows of large faces on several threads. `keyed` are the keys of the faces before free ones have their
+/// insides.
+pub(crate) fn fill(
+    input: &Input,
+    border: &[DVec3],
+    prepared: &[FaceMesh],
+    keyed: Option<KeyedFaces>,
+    refill: Refill,
+    job: &Job,
+) -> Result<Mesh> {
     let sum = |f: &dyn Fn(&FaceMesh) -> u64| prepared.iter().map(f).sum::<u64>() as usize;
     let on_border = border.len();
     let mut all = Vec::with_capacity(on_border + sum(&|p| p.inner));
@@ -119,15 +134,15 @@ pub(crate) fn fill(input: &Input, border: &[DVec3], prepared: &[FaceMesh], (keye
     let (border, mut inner) = mesh.nodes.split_at_mut(on_border);
     let (border, mut triangles, mut quads) = (&*border, mesh.triangles.as_mut_slice(), mesh.quads.as_mut_slice());
     let mut work = Vec::new();
-    for (k, ready) in prepared.iter().enumerate() {
+    for (k, face_mesh) in prepared.iter().enumerate() {
         let own;
-        (own, inner) = inner.split_at_mut(ready.inner as usize);
+        (own, inner) = inner.split_at_mut(face_mesh.inner as usize);
         let (t, q);
-        (t, triangles) = triangles.split_at_mut(ready.triangles as usize);
-        (q, quads) = quads.split_at_mut(ready.quads as usize);
-        let free = matches!(ready.geometry.nodes, FaceNodes::Free(..));
-        let key = keyed.filter(|_| !free).map(|(known, keys)| (known, keys[k]));
-        work.push(Fill { ready, key, again, nodes: own, triangles: t, quads: q, result: Ok(()) });
+        (t, triangles) = triangles.split_at_mut(face_mesh.triangles as usize);
+        (q, quads) = quads.split_at_mut(face_mesh.quads as usize);
+        let free = matches!(face_mesh.geometry.nodes, FaceNodes::Free(..));
+        let key = keyed.filter(|_| !free).map(|keyed| (keyed.cache, keyed.keys[k]));
+        work.push(Fill { face_mesh, key, refill, nodes: own, triangles: t, quads: q, result: Ok(()) });
     }
     job.expect(work.len() as u64);
     par::chunks_mut(&mut work, 1, |_, faces| {

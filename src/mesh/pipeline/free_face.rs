@@ -1,4 +1,4 @@
-//! A free face made, or taken over from an earlier run.
+//! A free face, computed or taken from the cache.
 
 use crate::base::fault::Result;
 use crate::base::job::Job;
@@ -10,38 +10,39 @@ use crate::mesh::chart::face_input::{FaceInput, outlined, prepared};
 use crate::mesh::chart::halved::odd;
 use crate::mesh::chart::rings;
 use crate::mesh::data::face_geometry::FaceNodes;
-use crate::mesh::data::face_mesh::{FaceMesh, FreeInside};
-use crate::mesh::face::free::grown;
+use crate::mesh::data::face_mesh::FaceMesh;
+use crate::mesh::face::free::filled;
 use crate::mesh::request::work::{too_much_work, work_on};
-use crate::mesh::tri::fit::near;
+use crate::mesh::tri::triangle_fit::near;
 use crate::mesh::tri::trouble::no_area;
 
-/// Makes the face, or takes it over from an earlier run.
-pub fn prepare(made: &FaceInput, face: &Face, (known, job): (Option<&CacheView>, &Job)) -> Result<FaceMesh> {
-    let (border, chart, mut outline) = outlined(made, face).ok_or_else(|| no_area(made, face))?;
+/// Computes the face, or takes it from the cache.
+pub fn prepare(face_input: &FaceInput, face: &Face, cache: Option<&CacheView>, job: &Job) -> Result<FaceMesh> {
+    let (border, chart, mut outline) = outlined(face_input, face).ok_or_else(|| no_area(face_input, face))?;
     if face.halved > 0 && face.is_grown() {
-        rings::add_rings(made, face, &border, &chart, &mut outline);
+        rings::add_rings(face_input, face, &border, &chart, &mut outline);
     }
-    let key = known.map(|known| {
-        let odd = if face.takes_quads() { odd(made, face) } else { Vec::new() };
-        (known, cached_face::key(known, made, face, (&border, &outline), (&odd, &near(made, face, &outline))))
+    let key = cache.map(|cache| {
+        let odd = if face.takes_quads() { odd(face_input, face) } else { Vec::new() };
+        let rules = near(face_input, face, &outline);
+        (cache, cached_face::FaceKey { face_input, face, border: &border, outline: &outline, odd: &odd, rules: &rules }.digest(cache))
     });
-    if let Some((known, key)) = key
-        && let Some((free, points, deciders, tally)) = known.free(key).and_then(|taken| taken.parts(border.uv.len()))
+    if let Some((cache, key)) = key
+        && let Some((free, inside)) = cache.free(key).and_then(|cached| cached.parts(border.uv.len(), &border.edges))
     {
-        return Ok(prepared(made, face, free, border.ids, FreeInside { points, loops: border.edges, deciders, tally }));
+        return Ok(prepared(face_input, face, free, border.ids, inside));
     }
-    let all = || grown(made, face, (border, chart, outline), job);
-    let surface = &made.input.model.surfaces[face.surface.index()].surface;
-    // What is tried again with shorter steps of its border, because nothing kept its limits, may take less.
-    let again = if face.method.is_coarse() { face.halved.min(FEWER) } else { 0 };
-    let most = work_on([surface].into_iter()) >> again;
-    let ready = Budget::new(most).within(all).map_err(|Exceeded| too_much_work(made.input, surface.origin()))??;
-    if let (Some((known, key)), FaceNodes::Free(free, _), Some(inside)) = (key, &ready.geometry.nodes, &ready.inside) {
-        known.keep_free(key, CachedFace::of(free, inside));
+    let all = || filled(face_input, face, border, &chart, &outline, job);
+    let surface = &face_input.input.model.surfaces[face.surface.index()].surface;
+    // A face that is tried again with shorter steps of its border, because nothing kept its limits, gets a smaller budget.
+    let halvings = if face.method.is_coarse() { face.halved.min(MAX_BUDGET_HALVINGS) } else { 0 };
+    let most = work_on([surface].into_iter()) >> halvings;
+    let face_mesh = Budget::new(most).within(all).map_err(|Exceeded| too_much_work(face_input.input, surface.origin()))??;
+    if let (Some((cache, key)), FaceNodes::Free(free, _), Some(inside)) = (key, &face_mesh.geometry.nodes, &face_mesh.inside) {
+        cache.keep_free(key, CachedFace::of(free, inside));
     }
-    Ok(ready)
+    Ok(face_mesh)
 }
 
-/// Times that the work of a face which is tried again is halved.
-const FEWER: u32 = 2;
+/// Largest number of times that the work budget of a face which is tried again is halved.
+const MAX_BUDGET_HALVINGS: u32 = 2;

@@ -1,13 +1,14 @@
 //! Free faces of quads: triangles paired, cells halved, nodes smoothed.
 
-pub mod fit;
-pub mod maker;
+pub mod limit_repair;
 pub mod net;
 pub mod net_check;
+pub mod net_fit;
 pub mod odd;
 pub mod open;
 pub mod pair;
-pub mod repaired;
+pub mod quad_face;
+pub mod settings;
 pub mod smooth;
 pub mod split;
 pub mod swap;

@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3};
 use crate::base::job;
 use crate::base::triangulate_points::NO_TRIANGLE;
 use crate::mesh::chart::halves::{Halves, NONE};
-use crate::mesh::quad::pair::Alone;
+use crate::mesh::quad::pair::SingleTriangles;
 use crate::mesh::tri::triangulation::Triangulation;
 
 /// Elements on a surface: border nodes first, which never move, then inner ones.
@@ -186,7 +186,7 @@ pub fn alone(net: &Net) -> usize {
     net.face.iter().filter(|f| f[3] == NONE).count()
 }
 
-impl Alone {
+impl SingleTriangles {
     /// Triangles of a triangulation that are a point or a line in space: two corners are one node.
     pub fn flat(triangulation: &Triangulation, halves: &Halves) -> Vec<bool> {
         let flat = |t: &[u32; 3]| (0..3).any(|k| halves.id(t[k]) != NONE && halves.id(t[k]) == halves.id(t[(k + 1) % 3]));

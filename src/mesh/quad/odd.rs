@@ -10,17 +10,7 @@ use std::collections::BinaryHeap;
 use crate::base::job;
 use crate::mesh::chart::halves::NONE;
 use crate::mesh::quad::net::Net;
-
-/// Cost of a cell that a row crosses from side to opposite side, round a corner, or of a triangle.
-const STRAIGHT: u32 = 2;
-const ROUND: u32 = 5;
-const TRIANGLE: u32 = 6;
-/// The same where a triangle has its third side on the border, whose middle becomes a flat corner, and of a cell that another
-/// row has crossed before.
-const FLAT: u32 = 60;
-const AGAIN: u32 = 40;
-/// So many ends of rows are tried in all ways two by two, more of them the nearest first.
-const ALL_WAYS: usize = 6;
+use crate::mesh::quad::settings::ROW_COSTS;
 
 /// Which sides of each face are not halved, as bits; `None` where borders part the odd counts.
 pub fn whole_sides(net: &Net) -> Option<Vec<u8>> {
@@ -32,7 +22,7 @@ pub fn whole_sides(net: &Net) -> Option<Vec<u8>> {
         }
     }
     let ends: Vec<usize> = (0..net.face.len()).filter(|f| rows.whole[*f].count_ones() % 2 == 1).collect();
-    if ends.len() > ALL_WAYS {
+    if ends.len() > ROW_COSTS.max_permuted_ends {
         rows.nearest(ends)?;
         return Some(rows.whole);
     }
@@ -70,18 +60,18 @@ struct Rows<'a> {
 
 /// A face that a row gets into over a side, for so much.
 #[derive(PartialEq, Eq)]
-struct Step {
+struct RowStep {
     cost: u32,
     state: usize,
 }
 
-impl Ord for Step {
+impl Ord for RowStep {
     fn cmp(&self, other: &Self) -> Ordering {
         other.cost.cmp(&self.cost).then(other.state.cmp(&self.state))
     }
 }
 
-impl PartialOrd for Step {
+impl PartialOrd for RowStep {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
@@ -104,13 +94,13 @@ impl Rows<'_> {
     /// The cost of a face between two of its sides.
     fn cost(&self, f: usize, from: usize, to: usize) -> u32 {
         let own = if self.net.face[f][3] == NONE {
-            if self.is_border(f, 3 - from - to) { FLAT } else { TRIANGLE }
+            if self.is_border(f, 3 - from - to) { ROW_COSTS.flat_triangle } else { ROW_COSTS.triangle }
         } else if from.abs_diff(to) == 2 {
-            STRAIGHT
+            ROW_COSTS.straight
         } else {
-            ROUND
+            ROW_COSTS.corner
         };
-        own + if self.whole[f].count_ones() > 1 { AGAIN } else { 0 }
+        own + if self.whole[f].count_ones() > 1 { ROW_COSTS.crossed_again } else { 0 }
     }
 
     /// Lays the cheapest row from a face to the nearest of others; which one that is, and what it costs.
@@ -118,10 +108,10 @@ impl Rows<'_> {
         let net = self.net;
         let first = (self.whole[start].trailing_zeros() as usize).min(3);
         let mut known = vec![(u32::MAX, usize::MAX); 4 * net.face.len()];
-        let mut open = BinaryHeap::from([Step { cost: 0, state: 4 * start + first }]);
+        let mut open = BinaryHeap::from([RowStep { cost: 0, state: 4 * start + first }]);
         known[4 * start + first] = (0, usize::MAX);
         let mut last = None;
-        while let Some(Step { cost, state }) = open.pop() {
+        while let Some(RowStep { cost, state }) = open.pop() {
             job::poll();
             let (f, from) = (state / 4, state % 4);
             if cost > known[state].0 {
@@ -139,7 +129,7 @@ impl Rows<'_> {
                 let there = cost + self.cost(f, from, to);
                 if there < known[next as usize].0 {
                     known[next as usize] = (there, state);
-                    open.push(Step { cost: there, state: next as usize });
+                    open.push(RowStep { cost: there, state: next as usize });
                 }
             }
         }

@@ -7,15 +7,8 @@ use crate::base::math::angle_between;
 use crate::mesh::chart::halves::NONE;
 use crate::mesh::chart::parametric_surface::{ParametricSurface, SizeField, foot_spot};
 use crate::mesh::quad::net::Net;
+use crate::mesh::quad::settings::OPENING;
 use crate::mesh::quad::smooth::{Over, Smoother};
-
-/// Quality of the quads round a node that is opened.
-const SOUND: f64 = 0.5;
-/// How far the two nodes move apart, over the length of the side.
-const APART: f64 = 0.3;
-
-/// Angle of a quad at the border, radians: 54°.
-const LEAST_ANGLE: f64 = 0.95;
 
 /// A node to be opened: the end of its long side, and the two nodes that get the quad's other corners.
 struct Opening {
@@ -26,14 +19,14 @@ struct Opening {
 }
 
 /// Opens nodes at sides that are longer than allowed, no two of them beside each other; gives the nodes of the new quads.
-pub fn open(net: &mut Net, (chart_surface, field): (&dyn ParametricSurface, &dyn SizeField), over: &Over) -> Vec<u32> {
-    let mut all = openings(net, (chart_surface, field), over);
+pub fn open(net: &mut Net, chart_surface: &dyn ParametricSurface, field: &dyn SizeField, over: &Over) -> Vec<u32> {
+    let mut all = openings(net, chart_surface, field, over);
     all.sort_by(|a, b| b.over.total_cmp(&a.over).then((a.node, a.towards).cmp(&(b.node, b.towards))));
     let mut faces_of: Vec<Vec<u32>> = vec![Vec::new(); if all.is_empty() { 0 } else { net.p.len() }];
     if !all.is_empty() {
         net.face.iter().enumerate().for_each(|(f, c)| c.iter().filter(|n| **n != NONE).for_each(|n| faces_of[*n as usize].push(f as u32)));
     }
-    let (mut busy, mut made) = (vec![false; net.p.len()], Vec::new());
+    let (mut busy, mut opened) = (vec![false; net.p.len()], Vec::new());
     for Opening { node, towards, hinges, .. } in all {
         job::poll();
         let near: Vec<usize> =
@@ -43,7 +36,7 @@ pub fn open(net: &mut Net, (chart_surface, field): (&dyn ParametricSurface, &dyn
         }
         near.iter().for_each(|n| busy[*n] = true);
         let new = net.p.len() as u32;
-        let step = (net.p[towards] - net.p[node]) * APART;
+        let step = (net.p[towards] - net.p[node]) * OPENING.node_distance;
         let place = |by: DVec3| foot_spot(chart_surface, net.xy[node], net.p[node] + by);
         let (here, there) = (place(step), place(-step));
         net.p.push(there.1.p);
@@ -60,13 +53,13 @@ pub fn open(net: &mut Net, (chart_surface, field): (&dyn ParametricSurface, &dyn
         }
         let quad = [hinges[0] as u32, new, hinges[1] as u32, node as u32];
         net.face.push(quad);
-        made.extend(quad);
+        opened.extend(quad);
     }
-    made
+    opened
 }
 
-/// What may be opened, at either end of each side that is too long.
-fn openings(net: &mut Net, (chart_surface, field): (&dyn ParametricSurface, &dyn SizeField), over: &Over) -> Vec<Opening> {
+/// The possible openings, at either end of each side that is too long.
+fn openings(net: &mut Net, chart_surface: &dyn ParametricSurface, field: &dyn SizeField, over: &Over) -> Vec<Opening> {
     let smoother = Smoother::new(net, chart_surface, field);
     let net = &*smoother.net;
     let mut found = Vec::new();
@@ -89,7 +82,7 @@ fn openings(net: &mut Net, (chart_surface, field): (&dyn ParametricSurface, &dyn
     found
 }
 
-/// What opening a node along a side costs in irregular nodes, and its hinges; `None` where it may not be.
+/// The cost of opening a node along a side in irregular nodes, and its hinges; `None` where it is not allowed.
 fn opening(smoother: &Smoother, node: usize, towards: usize) -> Option<(i64, usize, usize, [usize; 2])> {
     let net = &*smoother.net;
     let valence = smoother.valence(node) as i64;
@@ -99,7 +92,7 @@ fn opening(smoother: &Smoother, node: usize, towards: usize) -> Option<(i64, usi
     let mut hinges = [NONE; 2];
     for f in smoother.faces(node) {
         let c = net.face[*f as usize];
-        if c[3] == NONE || net.quality(*f as usize) < SOUND {
+        if c[3] == NONE || net.quality(*f as usize) < OPENING.min_quality {
             return None;
         }
         let k = c.iter().position(|n| *n as usize == node)?;
@@ -130,5 +123,5 @@ fn has_room(smoother: &Smoother, node: usize) -> bool {
         let side = |i: usize| net.p[c[(k + i) % c.len()] as usize] - net.p[node];
         angle += angle_between(side(1), side(c.len() - 1));
     }
-    angle / (smoother.valence(node) + 1) as f64 > LEAST_ANGLE
+    angle / (smoother.valence(node) + 1) as f64 > OPENING.min_border_angle
 }

@@ -5,29 +5,21 @@ use glam::DVec3;
 use crate::base::job;
 use crate::base::triangulate_points::NO_TRIANGLE;
 use crate::mesh::quad::net::least_sine;
+use crate::mesh::quad::settings::PAIRING;
 use crate::mesh::tri::triangulation::Triangulation;
 
-/// What triangles that stay alone are worth.
+/// The value of triangles that stay single against pairs of them.
 #[derive(Clone, Copy, Debug)]
-pub struct Alone {
-    /// Quality that a pair must have.
-    pub least: f64,
-    /// Quality of a pair that is as bad as two triangles alone.
-    pub worth: f64,
+pub struct SingleTriangles {
+    /// Least quality of a pair.
+    pub min_pair_quality: f64,
+    /// Quality of a pair that counts like two single triangles.
+    pub equal_pair_quality: f64,
 }
-
-/// Exchanges along a row: pairs that are made.
-const DEEP: usize = 7;
-/// Rounds of exchanges.
-const ROUNDS: usize = 3;
-/// What an exchange must gain.
-const GAIN: f64 = 1.0 / STEPS;
-/// Steps in which costs are counted, so that rounding does not decide between equal ones.
-const STEPS: f64 = 1e6;
 
 struct Pairing<'a> {
     triangulation: &'a Triangulation,
-    alone: Alone,
+    singles: SingleTriangles,
     /// Cost of the pair across each side; infinite where there may be none.
     cost: Vec<[f64; 3]>,
     mate: Vec<u32>,
@@ -38,8 +30,8 @@ struct Pairing<'a> {
 
 /// The triangle that each is paired with, or [`NO_TRIANGLE`]; `normal` are those of the surface at the nodes, `flat`
 /// triangles are left out.
-pub fn pair(triangulation: &Triangulation, normal: &[DVec3], flat: &[bool], alone: Alone) -> Vec<u32> {
-    let cost = costs(triangulation, normal, flat, alone);
+pub fn pair(triangulation: &Triangulation, normal: &[DVec3], flat: &[bool], singles: SingleTriangles) -> Vec<u32> {
+    let cost = costs(triangulation, normal, flat, singles);
     let mut order: Vec<(f64, u32, u8)> = Vec::new();
     for (t, sides) in cost.iter().enumerate() {
         job::poll();
@@ -57,8 +49,8 @@ pub fn pair(triangulation: &Triangulation, normal: &[DVec3], flat: &[bool], alon
             (mate[t as usize], mate[other as usize]) = (other, t);
         }
     }
-    let mut pairing = Pairing { triangulation, alone, cost, mate, row: Vec::new(), best: (0.0, Vec::new()) };
-    for _ in 0..ROUNDS {
+    let mut pairing = Pairing { triangulation, singles, cost, mate, row: Vec::new(), best: (0.0, Vec::new()) };
+    for _ in 0..PAIRING.max_rounds {
         if !pairing.exchange(flat) {
             break;
         }
@@ -67,7 +59,7 @@ pub fn pair(triangulation: &Triangulation, normal: &[DVec3], flat: &[bool], alon
 }
 
 /// Costs of all pairs: how far from a square.
-fn costs(triangulation: &Triangulation, normal: &[DVec3], flat: &[bool], alone: Alone) -> Vec<[f64; 3]> {
+fn costs(triangulation: &Triangulation, normal: &[DVec3], flat: &[bool], singles: SingleTriangles) -> Vec<[f64; 3]> {
     let cost = |t: usize, k: usize| {
         let other = triangulation.across[t][k];
         if other == NO_TRIANGLE || triangulation.locked[t] >> k & 1 == 1 || flat[t] || flat[other as usize] {
@@ -78,7 +70,7 @@ fn costs(triangulation: &Triangulation, normal: &[DVec3], flat: &[bool], alone: 
         let Some(tip) = triangulation.tri[other as usize].into_iter().find(|n| *n != b && *n != d) else { return f64::INFINITY };
         let quad = [a, b, tip, d].map(|n| n as usize);
         let quality = least_sine(quad.map(|n| triangulation.p[n]), quad.map(|n| normal[n]));
-        if quality < alone.least { f64::INFINITY } else { (loss(quality) * STEPS).round() / STEPS }
+        if quality < singles.min_pair_quality { f64::INFINITY } else { (loss(quality) * PAIRING.cost_steps).round() / PAIRING.cost_steps }
     };
     let mut all = vec![[f64::INFINITY; 3]; triangulation.tri.len()];
     for t in 0..triangulation.tri.len() {
@@ -111,7 +103,7 @@ impl Pairing<'_> {
             if self.mate[t as usize] != NO_TRIANGLE || flat[t as usize] {
                 continue;
             }
-            self.best = (-GAIN, Vec::new());
+            self.best = (-PAIRING.min_gain, Vec::new());
             self.row.clear();
             self.row.push(t);
             self.follow(t, 0.0);
@@ -142,14 +134,14 @@ impl Pairing<'_> {
             let next = self.mate[other as usize];
             self.row.push(other);
             if next == NO_TRIANGLE {
-                self.keep(spent + cost - 2.0 * loss(self.alone.worth));
+                self.keep(spent + cost - 2.0 * loss(self.singles.equal_pair_quality));
             } else {
                 let freed =
                     self.triangulation.across[other as usize].iter().position(|o| *o == next).map_or(0.0, |j| self.cost[other as usize][j]);
                 let spent = spent + cost - freed;
                 self.row.push(next);
                 self.keep(spent);
-                if self.row.len() < 2 * DEEP {
+                if self.row.len() < 2 * PAIRING.max_row_pairs {
                     self.follow(next, spent);
                 }
                 self.row.pop();

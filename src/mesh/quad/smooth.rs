@@ -9,36 +9,17 @@ use crate::base::work;
 use crate::mesh::chart::halves::NONE;
 use crate::mesh::chart::parametric_surface::{ParametricSurface, SizeField, foot_near, foot_spot};
 use crate::mesh::quad::net::{Net, least_quality};
-
-/// Work of a search for a better place of a node, in evaluations of the surface, beside those.
-const CLIMB_WORK: u64 = 40;
-/// Moves below this share of the wanted length end the smoothing of a node.
-const STILL: f64 = 0.005;
-/// Elements that stay this good may get worse for the sake of even lengths.
-const ENOUGH: f64 = 0.85;
-/// What a search must gain.
-const GAIN: f64 = 0.001;
-/// First and last step of a search, over the wanted length.
-const STEPS: (f64, f64) = (0.25, 0.01);
-/// Nodes between two questions whether to go on.
-const WATCH: usize = 1 << 14;
-
-/// Sides above this share of what is allowed are shared out.
-const TIGHT: f64 = 0.97;
-/// Sides below this share of the wanted length, or of those round a node, are not made shorter by such moves.
-const SHORT: f64 = 0.4;
-/// Elements that stay this good may get worse for the sake of shorter sides.
-const STRAINED: f64 = 0.75;
+use crate::mesh::quad::settings::SMOOTHING;
 
 /// Length of the side between two nodes over what is allowed there.
 pub type Over<'a> = dyn Fn(&Net, usize, usize) -> f64 + 'a;
 
-/// How good some faces of a net are together.
+/// The quality of some faces of a net together.
 pub type Score<'a> = dyn Fn(&Net, &[u32]) -> f64 + 'a;
 
 /// A place of a node.
 #[derive(Clone, Copy)]
-struct Place {
+struct NodePosition {
     xy: DVec2,
     p: DVec3,
     normal: DVec3,
@@ -55,7 +36,7 @@ pub struct Smoother<'a> {
     of: Vec<u32>,
     /// Nodes that may have to move.
     active: Vec<bool>,
-    /// Nodes that moved: elements round others are as good as they were.
+    /// Nodes that moved: elements round others are unchanged.
     fresh: Vec<bool>,
 }
 
@@ -100,21 +81,21 @@ impl<'a> Smoother<'a> {
         least_quality(self.net, self.faces(node))
     }
 
-    fn place(&self, node: usize) -> Place {
-        Place { xy: self.net.xy[node], p: self.net.p[node], normal: self.net.normal[node] }
+    fn place(&self, node: usize) -> NodePosition {
+        NodePosition { xy: self.net.xy[node], p: self.net.p[node], normal: self.net.normal[node] }
     }
 
-    fn put(&mut self, node: usize, place: Place) {
+    fn put(&mut self, node: usize, place: NodePosition) {
         (self.net.xy[node], self.net.p[node], self.net.normal[node]) = (place.xy, place.p, place.normal);
     }
 
     /// The foot of a point near a node.
-    fn foot(&self, node: usize, p: DVec3) -> Place {
+    fn foot(&self, node: usize, p: DVec3) -> NodePosition {
         let (xy, spot) = foot_spot(self.chart_surface, self.net.xy[node], p);
-        Place { xy, p: spot.p, normal: spot.normal() }
+        NodePosition { xy, p: spot.p, normal: spot.normal() }
     }
 
-    /// A node moved for good.
+    /// Completes the move of a node.
     fn settle(&mut self, node: usize) {
         self.net.size[node] = self.field.size(self.net.xy[node], self.net.p[node]);
         self.wake(node);
@@ -137,7 +118,7 @@ impl<'a> Smoother<'a> {
         for _ in 0..rounds {
             let mut moved = false;
             for node in self.net.fixed as usize..self.net.p.len() {
-                if node % WATCH == 0 {
+                if node % SMOOTHING.nodes_per_check == 0 {
                     job.go_on()?;
                 }
                 if std::mem::take(&mut self.active[node]) && self.relax(node) {
@@ -176,12 +157,12 @@ impl<'a> Smoother<'a> {
         (weights > 0.0).then(|| (sum / (3.0 * weights), place / (3.0 * weights)))
     }
 
-    /// One step of one node; whether it moved worth mentioning.
+    /// One step of one node; whether it moved by more than the least move.
     fn relax(&mut self, node: usize) -> bool {
         let Some((demand, to)) = self.centre(node) else { return false };
         let start = self.place(node);
         let step = demand - start.p;
-        let still = STILL * self.net.size[node];
+        let still = SMOOTHING.min_move * self.net.size[node];
         if step.length_squared() < still * still {
             return false;
         }
@@ -191,9 +172,9 @@ impl<'a> Smoother<'a> {
             // The mean in the chart is nearly the foot of the one in space.
             let guess = self.chart_surface.clamp(start.xy + (to - start.xy) * share);
             let (xy, spot) = foot_near(self.chart_surface, guess, start.p + step * share, step.length() * share);
-            self.put(node, Place { xy, p: spot.p, normal: spot.normal() });
+            self.put(node, NodePosition { xy, p: spot.p, normal: spot.normal() });
             let after = self.worst(node);
-            if after >= ENOUGH {
+            if after >= SMOOTHING.min_smoothed_quality {
                 return true;
             }
             let place = self.place(node);
@@ -207,14 +188,14 @@ impl<'a> Smoother<'a> {
         false
     }
 
-    /// Shares long sides out to their neighbours: nodes move towards those they are too far from, while elements stay good
-    /// enough. `over` is the length of a side over what is allowed, of two places.
+    /// Shortens long sides at the cost of their neighbours: nodes move towards those they are too far from, while elements keep a least
+    /// quality. `over` is the length of a side over what is allowed, of two places.
     pub fn even_out(&mut self, over: &Over, rounds: usize, job: &Job) -> Result<()> {
         self.active.copy_from_slice(&self.fresh);
         for _ in 0..rounds {
             let mut moved = false;
             for node in self.net.fixed as usize..self.net.p.len() {
-                if node % WATCH == 0 {
+                if node % SMOOTHING.nodes_per_check == 0 {
                     job.go_on()?;
                 }
                 if std::mem::take(&mut self.active[node]) && self.pull(node, over) {
@@ -253,18 +234,21 @@ impl<'a> Smoother<'a> {
             sum += self.net.p[other] * weight;
             weights += weight;
         }
-        if most <= TIGHT {
+        if most <= SMOOTHING.max_side_ratio {
             return false;
         }
         let strain =
             |this: &Self| this.neighbours(node).map(|other| tension(this.net, other)).map(|t| t * t * t * t * t * t * t * t).sum::<f64>();
         let (start, before, worst) = (self.place(node), strain(self), self.worst(node));
-        let short = self.shortest(node).min(SHORT * self.net.size[node]);
+        let short = self.shortest(node).min(SMOOTHING.min_side * self.net.size[node]);
         let mut step = sum / weights - start.p;
         for _ in 0..3 {
             let place = self.foot(node, start.p + step);
             self.put(node, place);
-            if strain(self) < before * (1.0 - GAIN) && self.worst(node) >= worst.min(STRAINED) && self.shortest(node) >= short {
+            if strain(self) < before * (1.0 - SMOOTHING.min_gain)
+                && self.worst(node) >= worst.min(SMOOTHING.min_evened_quality)
+                && self.shortest(node) >= short
+            {
                 return true;
             }
             step *= 0.5;
@@ -291,7 +275,7 @@ impl<'a> Smoother<'a> {
                         continue;
                     }
                     let before = self.net.xy[n as usize];
-                    gained |= self.climb(n as usize, (&least_quality, f64::INFINITY));
+                    gained |= self.climb(n as usize, &least_quality, f64::INFINITY);
                     tried[n as usize] = true;
                     if self.net.xy[n as usize] != before {
                         let round = self.faces(n as usize).iter().flat_map(|f| self.net.corners(*f as usize));
@@ -307,20 +291,20 @@ impl<'a> Smoother<'a> {
     }
 
     /// Searches round a node for the place where the `score` of the faces round it is largest, or `enough`; whether it moved.
-    pub fn climb(&mut self, node: usize, (score, enough): (&Score, f64)) -> bool {
-        work::spend(CLIMB_WORK);
+    pub fn climb(&mut self, node: usize, score: &Score, enough: f64) -> bool {
+        work::spend(SMOOTHING.search_work);
         let size = self.mean_side(node);
         let start = score(self.net, self.faces(node));
         let (mut best, mut place) = (start, self.place(node));
-        let mut reach = STEPS.0;
-        while reach > STEPS.1 && best < enough {
+        let mut reach = SMOOTHING.search_steps.end;
+        while reach > SMOOTHING.search_steps.start && best < enough {
             let (ahead, aside) = self.frame(node, place);
-            let (mut found, short) = (false, self.shortest(node).min(SHORT * size));
+            let (mut found, short) = (false, self.shortest(node).min(SMOOTHING.min_side * size));
             for (x, y) in EIGHT {
                 let trial = self.foot(node, place.p + (ahead * x + aside * y) * (reach * size));
                 self.put(node, trial);
                 let now = score(self.net, self.faces(node));
-                if now > best + GAIN * reach && self.shortest(node) >= short {
+                if now > best + SMOOTHING.min_gain * reach && self.shortest(node) >= short {
                     (best, place, found) = (now, trial, true);
                     break;
                 }
@@ -330,14 +314,14 @@ impl<'a> Smoother<'a> {
                 reach *= 0.5;
             }
         }
-        if best > start + GAIN {
+        if best > start + SMOOTHING.min_gain {
             self.settle(node);
         }
-        best > start + GAIN
+        best > start + SMOOTHING.min_gain
     }
 
     /// Two directions along the surface, the first towards a neighbour.
-    fn frame(&self, node: usize, place: Place) -> (DVec3, DVec3) {
+    fn frame(&self, node: usize, place: NodePosition) -> (DVec3, DVec3) {
         let normal = if place.normal == DVec3::ZERO { DVec3::Z } else { place.normal };
         let c = self.faces(node).first().map_or(&[][..], |f| self.net.corners(*f as usize));
         let next = c.iter().position(|c| *c as usize == node).map_or(node, |k| c[(k + 1) % c.len()] as usize);

@@ -9,7 +9,7 @@ use crate::mesh::quad::net::Net;
 
 /// Quads in place of all faces; sides of borders and lines get the nodes that are given for their middles. Neighbours are
 /// not noted in the finer net. `whole` has the sides of each face that are not halved, as bits, an even number of them.
-pub fn split(net: &Net, whole: &[u8], (chart_surface, field): (&dyn ParametricSurface, &dyn SizeField)) -> Net {
+pub fn split(net: &Net, whole: &[u8], chart_surface: &dyn ParametricSurface, field: &dyn SizeField) -> Net {
     let mut fine = Net { p: net.p.clone(), xy: net.xy.clone(), normal: net.normal.clone(), fixed: net.fixed, ..Net::default() };
     for n in 0..net.fixed as usize {
         job::poll();
@@ -23,11 +23,11 @@ pub fn split(net: &Net, whole: &[u8], (chart_surface, field): (&dyn ParametricSu
         let c = net.corners(f);
         for k in 0..c.len() {
             let other = net.across[f][k];
-            let made = if other == NONE { NONE } else { mids[other as usize / 4][other as usize % 4] };
+            let shared = if other == NONE { NONE } else { mids[other as usize / 4][other as usize % 4] };
             mids[f][k] = match () {
                 () if whole[f] >> k & 1 == 1 => NONE,
                 () if net.mid[f][k] != NONE => net.mid[f][k],
-                () if made != NONE => made,
+                () if shared != NONE => shared,
                 () => between(&mut fine, chart_surface, &[c[k], c[(k + 1) % c.len()]]),
             };
         }

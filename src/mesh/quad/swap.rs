@@ -3,22 +3,13 @@
 use crate::base::{job, math};
 use crate::mesh::chart::halves::NONE;
 use crate::mesh::quad::net::{Net, least_sine, least_sine_of_triangle};
+use crate::mesh::quad::settings::SWAPS;
 
-/// Rounds over all faces at most.
-const ROUNDS: usize = 6;
-/// What a swap must gain.
-const GAIN: f64 = 0.01;
-/// What a bad shape costs, in irregular nodes.
-const SHAPE: f64 = 12.0;
-/// Shapes below this are not made.
-const LEAST: f64 = 0.2;
-/// What a triangle costs, in irregular nodes: it gets a node with three faces in its middle, and others round it.
-const ALONE: f64 = 2.0;
 /// A right angle, radians.
 const RIGHT: f64 = std::f64::consts::FRAC_PI_2;
 
 /// A side of the polygon of two faces: its first node, the side beyond it, whether it is locked, and its middle.
-type Side = (u32, u32, bool, u32);
+type PolygonSide = (u32, u32, bool, u32);
 
 /// Swaps sides of a net.
 pub struct Swapper<'a> {
@@ -26,7 +17,7 @@ pub struct Swapper<'a> {
     /// Faces round each node, and how many there should be.
     valence: Vec<u32>,
     wanted: Vec<u32>,
-    polygon: Vec<Side>,
+    polygon: Vec<PolygonSide>,
 }
 
 impl<'a> Swapper<'a> {
@@ -51,11 +42,11 @@ impl<'a> Swapper<'a> {
 
     /// Swaps until nothing gets better.
     pub fn swap(&mut self) {
-        for _ in 0..ROUNDS {
+        for _ in 0..SWAPS.max_rounds {
             let (mut swapped, mut f) = (false, 0);
             // A merge takes a face out.
             while f < self.net.face.len() {
-                if !self.is_fine(f) {
+                if !self.is_regular(f) {
                     swapped |= (0..self.net.corners(f).len()).any(|k| self.swap_at(f, k));
                 }
                 f += 1;
@@ -67,7 +58,7 @@ impl<'a> Swapper<'a> {
     }
 
     /// A quad whose nodes have as many faces as they should.
-    fn is_fine(&self, f: usize) -> bool {
+    fn is_regular(&self, f: usize) -> bool {
         self.net.face[f][3] != NONE && self.net.face[f].iter().all(|n| self.valence[*n as usize] == self.wanted[*n as usize])
     }
 
@@ -111,7 +102,7 @@ impl<'a> Swapper<'a> {
         } else {
             least_sine([p(0), p(1), p(2), p(3)], [n(0), n(1), n(2), n(3)])
         };
-        if quality < LEAST { f64::INFINITY } else { SHAPE * (1.0 - quality) * (1.0 - quality) }
+        if quality < SWAPS.min_quality { f64::INFINITY } else { SWAPS.shape_cost * (1.0 - quality) * (1.0 - quality) }
     }
 
     fn swap_at(&mut self, f: usize, k: usize) -> bool {
@@ -130,11 +121,11 @@ impl<'a> Swapper<'a> {
             ends(a, b) + self.shape(&x) + self.shape(&y)
         };
         let now = cost(0, first);
-        let now = if now.is_finite() { now } else { ends(0, first) + 2.0 * SHAPE };
+        let now = if now.is_finite() { now } else { ends(0, first) + 2.0 * SWAPS.shape_cost };
         if n == 4 {
             return self.merge(f, g, now);
         }
-        let mut best = (now - GAIN, None);
+        let mut best = (now - SWAPS.min_gain, None);
         for a in 0..n {
             for b in a + 2..n {
                 let smaller = (b - a).min(n - b + a);
@@ -162,12 +153,12 @@ impl<'a> Swapper<'a> {
         true
     }
 
-    /// Two triangles as one quad, where that is better.
+    /// Two triangles as one quad, where that is better; whether it is.
     fn merge(&mut self, f: usize, g: usize, now: f64) -> bool {
         let whole: Vec<usize> = (0..4).collect();
         let ends = |i: usize| if i == 0 || i == 2 { -1 } else { 0 };
         let merged = self.shape(&whole) + (0..4).map(|i| self.odd(self.polygon[i].0, ends(i))).sum::<f64>();
-        if merged >= now + 2.0 * ALONE {
+        if merged >= now + 2.0 * SWAPS.triangle_cost {
             return false;
         }
         for i in [0, 2] {
@@ -227,7 +218,7 @@ mod tests {
     use crate::base::triangulate_points::NO_TRIANGLE;
     use crate::mesh::quad::net_check::check_pairs;
     use crate::mesh::quad::net_check::tests::{Random, net_of, random_pairs, sheet};
-    use crate::mesh::quad::pair::{Alone, pair};
+    use crate::mesh::quad::pair::{SingleTriangles, pair};
 
     /// What no swap may change: the nodes, the locked sides with their middles, and the area in the chart.
     fn kept(net: &Net) -> (Vec<(u32, u32, u32)>, f64) {
@@ -289,7 +280,7 @@ mod tests {
             let mut flat = vec![false; triangulation.tri.len()];
             // What is left out stays alone.
             flat.iter_mut().step_by(23).for_each(|flat| *flat = case % 2 == 1);
-            let mate = pair(&triangulation, &normal, &flat, Alone { least: 0.2, worth: 0.45 });
+            let mate = pair(&triangulation, &normal, &flat, SingleTriangles { min_pair_quality: 0.2, equal_pair_quality: 0.45 });
             check_pairs(&triangulation, &flat, &mate).unwrap();
             let mut net = net_of(&triangulation, &mate, &normal, &halves);
             let before = kept(&net);

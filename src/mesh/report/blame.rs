@@ -12,7 +12,7 @@ use crate::mesh::border::layout::Face;
 use crate::mesh::chart::face_input::FaceInput;
 use crate::mesh::data::face_mesh::{FaceMesh, element_ranges};
 use crate::mesh::data::mesh::Mesh;
-use crate::mesh::face::foresee::{self, Foreseen, SHARP};
+use crate::mesh::face::map_quality::{self, MAP_CHOICE, MapQuality};
 use crate::mesh::request::fault::Cure;
 use crate::mesh::request::methods::Method;
 use crate::mesh::request::sources::distance_to_segment;
@@ -45,7 +45,7 @@ pub struct Seen {
 }
 
 /// The least angle of each face; nothing where triangles are long by their method.
-pub fn of_faces(made: &FaceInput, (sizing, foreseen): (&Sizing, &[Option<Foreseen>]), prepared: &[FaceMesh], mesh: &Mesh) -> Vec<Seen> {
+pub fn of_faces(made: &FaceInput, (sizing, foreseen): (&Sizing, &[Option<MapQuality>]), prepared: &[FaceMesh], mesh: &Mesh) -> Vec<Seen> {
     let ranges = element_ranges(prepared);
     par::map(prepared.len(), |f| {
         let elements = (&mesh.triangles[ranges[f].0.clone()], &mesh.quads[ranges[f].1.clone()]);
@@ -57,7 +57,7 @@ type Elements<'a> = (&'a [[u32; 3]], &'a [[u32; 4]]);
 
 fn of_face(
     made: &FaceInput,
-    (sizing, foreseen): (&Sizing, Option<&Foreseen>),
+    (sizing, foreseen): (&Sizing, Option<&MapQuality>),
     face: &Face,
     (triangles, quads): Elements,
     mesh: &Mesh,
@@ -68,17 +68,19 @@ fn of_face(
     // Each corner first, with the nodes before and after it.
     let halves = quads.iter().flat_map(|[a, b, c, d]| [[*a, *b, *d], [*b, *c, *a], [*c, *d, *b], [*d, *a, *c]]);
     let own = triangles.iter().flat_map(|[a, b, c]| [[*a, *b, *c], [*b, *c, *a], [*c, *a, *b]]);
-    let squared_cosine = math::cos(SHARP) * math::cos(SHARP) - COSINE_ROOM;
+    let squared_cosine = math::cos(MAP_CHOICE.min_map_angle) * math::cos(MAP_CHOICE.min_map_angle) - COSINE_ROOM;
     // Only few corners are as sharp: the others are left out before their angles are computed.
     let all = own.chain(halves).filter(|t| has_cosine(mesh, *t, squared_cosine)).map(|t| (angle(mesh, t), t));
     let all: Vec<(f64, [u32; 3])> = job::looking(all).collect();
     let least = all.iter().copied().min_by(|a, b| a.0.total_cmp(&b.0))?;
-    if least.0 >= SHARP {
+    if least.0 >= MAP_CHOICE.min_map_angle {
         return None;
     }
     let blame = Blame { made, sizing, face, mesh, edges: edges(made, face) };
     let pointed = blame.pointed();
-    let sharp = job::looking(all).filter(|(angle, t)| *angle < SHARP && !blame.is_near(&pointed, *t)).min_by(|a, b| a.0.total_cmp(&b.0));
+    let sharp = job::looking(all)
+        .filter(|(angle, t)| *angle < MAP_CHOICE.min_map_angle && !blame.is_near(&pointed, *t))
+        .min_by(|a, b| a.0.total_cmp(&b.0));
     let sharp = sharp.map(|(angle, t)| {
         let surface = made.input.model.surfaces[face.surface.index()].name.clone();
         Remark::Sharp { angle, at: mesh.nodes[t[0] as usize], surface, faces: 1, cure: blame.cure(foreseen, t) }
@@ -166,11 +168,11 @@ impl Blame<'_> {
     }
 
     /// The setting that makes a sharp angle larger.
-    fn cure(&self, foreseen: Option<&Foreseen>, c: [u32; 3]) -> Cure {
+    fn cure(&self, foreseen: Option<&MapQuality>, c: [u32; 3]) -> Cure {
         let p = c.map(|n| self.mesh.nodes[n as usize]);
         let shortest = (0..3).map(|k| p[k].distance(p[(k + 1) % 3])).fold(f64::INFINITY, f64::min);
         match foreseen {
-            _ if foresee::is_written(self.face, self.sizing) => Cure::Rows,
+            _ if map_quality::is_written(self.face, self.sizing) => Cure::Rows,
             None => Cure::Near,
             Some(found) if self.face.method == Method::Mapped && found.is_worse_than_free() => Cure::Auto,
             // A right-angled triangle of the size beside the short side has 27°.

@@ -4,21 +4,22 @@ use std::collections::VecDeque;
 
 use glam::{DVec2, DVec3};
 
-use crate::base::fault::Result;
 use crate::base::job::{self, Job};
 use crate::base::triangulate_points::{Triangles, points};
 use crate::mesh::chart::outline::{Outline, inside};
 use crate::mesh::chart::parametric_surface::{ParametricSurface, SizeField};
 use crate::mesh::request::plan::TALL;
-use crate::mesh::tri::front::{Cell, FrontInput, STRAIGHT, grow};
+use crate::mesh::tri::front::{FrontInput, LatticeCell, STRAIGHT, grow};
 use crate::mesh::tri::optimize::{LimitCheck, MeshOptimizer, OptimizeSettings};
-use crate::mesh::tri::quadtree::{self, Plot};
+use crate::mesh::tri::optimize_settings::REPAIR;
+use crate::mesh::tri::placement_settings::ESTIMATE;
+use crate::mesh::tri::quadtree::{self, TreeFace};
 use crate::mesh::tri::triangulation::Triangulation;
-use crate::mesh::tri::trouble::Trouble;
+use crate::mesh::tri::trouble::{Outcome, Trouble};
 
 /// Where inner nodes come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Lattice {
+pub enum NodePlacement {
     /// A lattice of equilateral triangles, grown from the border.
     Triangles,
     /// A lattice of squares, grown from the border.
@@ -27,7 +28,7 @@ pub enum Lattice {
     Tree,
 }
 
-/// What a face is made from.
+/// A face to be triangulated.
 pub struct Task<'a> {
     /// The surface.
     pub chart_surface: &'a dyn ParametricSurface,
@@ -35,26 +36,26 @@ pub struct Task<'a> {
     pub field: &'a dyn SizeField,
     /// The border.
     pub outline: &'a Outline,
-    /// How triangles are improved.
+    /// Settings of the optimization.
     pub settings: OptimizeSettings,
     /// Where inner nodes come from.
-    pub lattice: Lattice,
-    /// Most inner nodes.
+    pub lattice: NodePlacement,
+    /// Largest number of inner nodes.
     pub most: usize,
-    /// Limits: what breaks one is divided.
+    /// Limits: triangles over one are divided.
     pub limit_check: Option<&'a dyn LimitCheck>,
 }
 
 /// The triangles of a face.
 pub struct Triangulated {
-    /// They and their nodes.
+    /// Triangles and nodes.
     pub triangulation: Triangulation,
-    /// Whether none of them breaks a limit, as far as is known.
-    pub keeps: bool,
+    /// Whether none of them exceeds a limit that was checked.
+    pub keeps_limits: bool,
 }
 
-/// Triangulates a face; the outer result is an interruption.
-pub fn triangulate(task: &Task, job: &Job) -> Result<std::result::Result<Triangulated, Trouble>> {
+/// Triangulates a face.
+pub fn triangulate(task: &Task, job: &Job) -> Outcome<Triangulated> {
     let triangulation = match initial_triangulation(task, job)? {
         Ok(triangulation) => triangulation,
         Err(trouble) => return Ok(Err(trouble)),
@@ -62,10 +63,10 @@ pub fn triangulate(task: &Task, job: &Job) -> Result<std::result::Result<Triangu
     let mut optimizer = MeshOptimizer::new(triangulation, task.chart_surface, task.field, task.settings);
     optimizer.settle();
     job.go_on()?;
-    // Where lengths were wrong, the rest of the work waits for better ones.
+    // Where lengths were wrong, the face is not optimized before better ones are known.
     let mut bad = task.limit_check.map_or(Vec::new(), |limit_check| optimizer.broken(limit_check, &[]));
     if optimizer.are_few(&bad) {
-        if bad.len() * FEW_BAD <= optimizer.triangulation.tri.len() {
+        if bad.len() * REPAIR.few_over_limit <= optimizer.triangulation.tri.len() {
             optimizer.improve(job)?;
         }
         if let Some(limit_check) = task.limit_check {
@@ -75,11 +76,11 @@ pub fn triangulate(task: &Task, job: &Job) -> Result<std::result::Result<Triangu
     optimizer.set_upright();
     let mut triangulation = optimizer.triangulation;
     triangulation.compact();
-    Ok(Ok(Triangulated { triangulation, keeps: bad.is_empty() }))
+    Ok(Ok(Triangulated { triangulation, keeps_limits: bad.is_empty() }))
 }
 
 /// The Delaunay triangles of a face in its chart, over its border and the nodes of its lattice; nothing is improved yet.
-pub fn initial_triangulation(task: &Task, job: &Job) -> Result<std::result::Result<Triangulation, Trouble>> {
+pub fn initial_triangulation(task: &Task, job: &Job) -> Outcome<Triangulation> {
     let outline = task.outline;
     let edges: Vec<[u32; 2]> = outline.edges().collect();
     let coarse = match points(&outline.xy, &edges) {
@@ -94,15 +95,17 @@ pub fn initial_triangulation(task: &Task, job: &Job) -> Result<std::result::Resu
         return Ok(Err(Trouble::Full));
     }
     let grown = match task.lattice {
-        Lattice::Triangles | Lattice::Squares => {
+        NodePlacement::Triangles | NodePlacement::Squares => {
             let seeds = seeds(&coarse, &kept, outline);
-            let cell = if task.lattice == Lattice::Squares { Cell::Square } else { Cell::Triangle };
+            let cell = if task.lattice == NodePlacement::Squares { LatticeCell::Square } else { LatticeCell::Triangle };
             grow(&FrontInput { chart_surface: task.chart_surface, field: task.field, outline, seeds: &seeds, cell, most: task.most }, job)?
         }
-        Lattice::Tree => match quadtree::nodes(&Plot { chart_surface: task.chart_surface, field: task.field, outline, most: task.most }) {
-            Ok(grown) => grown,
-            Err(trouble) => return Ok(Err(trouble)),
-        },
+        NodePlacement::Tree => {
+            match quadtree::nodes(&TreeFace { chart_surface: task.chart_surface, field: task.field, outline, most: task.most }) {
+                Ok(grown) => grown,
+                Err(trouble) => return Ok(Err(trouble)),
+            }
+        }
     };
     if grown.full {
         return Ok(Err(Trouble::Full));
@@ -124,10 +127,7 @@ pub fn initial_triangulation(task: &Task, job: &Job) -> Result<std::result::Resu
     Ok(Ok(Triangulation::new(p, xy, size, outline.p.len() as u32, &all, &kept)))
 }
 
-/// Where more than one triangle in so many breaks a limit, dividing them mends most of the face as well.
-const FEW_BAD: usize = 100;
-
-/// About how many nodes each of some tasks on one outline asks for; `None` where the outline crosses itself or bounds nothing.
+/// Estimated numbers of nodes of some tasks on one outline; `None` where the outline crosses itself or bounds nothing.
 pub fn expected_nodes<const N: usize>(tasks: [&Task; N]) -> Option<[f64; N]> {
     let outline = tasks.first()?.outline;
     let edges: Vec<[u32; 2]> = outline.edges().collect();
@@ -136,21 +136,21 @@ pub fn expected_nodes<const N: usize>(tasks: [&Task; N]) -> Option<[f64; N]> {
     kept.contains(&true).then(|| tasks.map(|task| expected(task, &coarse, &kept)))
 }
 
-/// About how many nodes the wanted lengths ask for, by the triangles between border nodes: known before any is made.
+/// Estimated number of nodes for the wanted lengths, by the triangles between border nodes.
 fn expected(task: &Task, coarse: &Triangles, kept: &[bool]) -> f64 {
     let corner = |n: u32| (task.outline.xy[n as usize], task.outline.p[n as usize]);
-    // Breadth first: what is left when there are too many is small.
+    // Breadth first: the triangles left undivided at the bound are small.
     let mut open: VecDeque<_> = (0..kept.len()).filter(|t| kept[*t]).map(|t| coarse.corners[t].map(corner)).collect();
-    let (mut total, mut left) = (0.0, MAX_DIVIDED + open.len());
+    let (mut total, mut left) = (0.0, ESTIMATE.max_divisions + open.len());
     while let Some(c) = open.pop_front() {
         let middle = (c.iter().map(|c| c.0).sum::<DVec2>() / 3.0, c.iter().map(|c| c.1).sum::<DVec3>() / 3.0);
         let size = task.field.size(middle.0, middle.1);
         let area = (c[1].1 - c[0].1).cross(c[2].1 - c[0].1).length();
         // Half a node a triangle of side `size`, whose area is √3/4 of its square, or one a square.
-        let cell = if task.lattice == Lattice::Squares { 1.0 } else { TALL };
+        let cell = if task.lattice == NodePlacement::Squares { 1.0 } else { TALL };
         let nodes = 0.5 * area / (cell * size * size);
-        let varies = || c.iter().any(|c| task.field.size(c.0, c.1) * SIZE_RATIO_EQUAL < size);
-        if task.field.is_even() || left == 0 || nodes < 1.0 || nodes < FEW && !varies() {
+        let varies = || c.iter().any(|c| task.field.size(c.0, c.1) * ESTIMATE.equal_size_ratio < size);
+        if task.field.is_even() || left == 0 || nodes < 1.0 || nodes < ESTIMATE.nodes_of_one_size && !varies() {
             total += nodes;
             continue;
         }
@@ -161,13 +161,6 @@ fn expected(task: &Task, coarse: &Triangles, kept: &[bool]) -> f64 {
     }
     total
 }
-
-/// Triangles that are divided when nodes are counted ahead, beside those between border nodes.
-const MAX_DIVIDED: usize = 10_000;
-/// Nodes up to which lengths are taken as one over a triangle.
-const FEW: f64 = 8.0;
-/// Ratio of lengths that count as one.
-const SIZE_RATIO_EQUAL: f64 = 1.25;
 
 /// Places to start from: the middles of the largest triangles between border nodes first, in the direction of the longest
 /// straight run of the border.

@@ -1,4 +1,4 @@
-//! A face with as few triangles as its limits allow: laid out between lines of constant u and v, and thinned.
+//! A face with as few triangles as its limits allow: triangulated between lines of constant u and v, and coarsened.
 
 use glam::DVec2;
 
@@ -10,28 +10,28 @@ use crate::mesh::request::limits::Limits;
 use crate::mesh::request::size_requests::floor_keeps;
 use crate::mesh::request::sources::Sources;
 use crate::mesh::request::work::allow;
-use crate::mesh::tri::coarsen::Thinner;
-use crate::mesh::tri::fit::{Fit, Shown};
-use crate::mesh::tri::isoline_mesh::{Failure, IsolineInput, lay};
+use crate::mesh::tri::coarsen::Coarsener;
+use crate::mesh::tri::isoline_mesh::{Failure, IsolineInput, mesh_isolines};
 use crate::mesh::tri::limit_table;
+use crate::mesh::tri::triangle_fit::{FaceFit, FittedFace};
 use crate::mesh::tri::triangulation::Triangulation;
-use crate::mesh::tri::trouble::Trouble;
+use crate::mesh::tri::trouble::{Outcome, Trouble};
 
 /// Quality below which sides are flipped: that of a right angle beside one of 15°.
-const SHARP: f64 = 0.4;
+const MIN_UNFLIPPED_QUALITY: f64 = 0.4;
 
-/// Elements whose work it takes to thin one out.
-const THINNED: u64 = 60;
+/// Work of the coarsening of an element, in elements.
+const COARSENING_WORK: u64 = 60;
 
-impl Fit<'_> {
-    /// Between lines of constant u and v.
-    pub(crate) fn laid(&self, rules: &Sources, job: &Job) -> Result<std::result::Result<Shown, Trouble>> {
-        let plan = self.made.input.plan;
-        let floor = self.made.wanted.written;
+impl FaceFit<'_> {
+    /// The triangulation between lines of constant u and v.
+    pub(crate) fn between_isolines(&self, rules: &Sources, job: &Job) -> Outcome<FittedFace> {
+        let plan = self.face_input.input.plan;
+        let floor = self.face_input.wanted.written;
         let flat = Limits::default();
         let limits = if self.surface.is_flat() { &flat } else { &self.limits };
-        let point = self.made.input.tolerance.point;
-        let ask = IsolineInput {
+        let point = self.face_input.input.tolerance.point;
+        let input = IsolineInput {
             chart: self.chart,
             outline: self.outline,
             limits,
@@ -41,46 +41,46 @@ impl Fit<'_> {
             most: self.most(),
             point,
         };
-        match lay(&ask, job)? {
-            Ok(laid) => Ok(Ok((laid.triangulation, laid.deciders, Some(laid.tally)))),
+        match mesh_isolines(&input, job)? {
+            Ok(mesh) => Ok(Ok(FittedFace { triangulation: mesh.triangulation, deciders: mesh.deciders, tally: Some(mesh.tally) })),
             Err(Failure::Trouble(Trouble::Full)) if limits.chord.or(limits.angle).is_some() => Err(self.too_many_for_limits()),
             Err(Failure::Trouble(trouble)) => Ok(Err(trouble)),
-            Err(Failure::Floor(needed, at)) => Err(floor_keeps(self.made.input, needed, at)),
-            Err(Failure::Missed(load, at)) => {
-                let (limit, says, over) = match (plan.settings.chord_error, plan.settings.angle_error) {
-                    (Some(says), _) if load.chord >= load.angle => (MeshLimit::ChordError, says, load.chord),
-                    (_, Some(says)) => (MeshLimit::AngleError, says, load.angle),
+            Err(Failure::Floor(needed, at)) => Err(floor_keeps(self.face_input.input, needed, at)),
+            Err(Failure::Missed(ratio, at)) => {
+                let (limit, setting, over) = match (plan.settings.chord_error, plan.settings.angle_error) {
+                    (Some(setting), _) if ratio.chord >= ratio.angle => (MeshLimit::ChordError, setting, ratio.chord),
+                    (_, Some(setting)) => (MeshLimit::AngleError, setting, ratio.angle),
                     _ => (MeshLimit::Size, plan.settings.size.unwrap_or((self.face.size.0, plan.origin)), 1.0),
                 };
-                Err(MeshFault::NotReached { limit, says: says.1, surface: self.surface.origin(), reached: over * says.0, at }.into())
+                Err(MeshFault::NotReached { limit, says: setting.1, surface: self.surface.origin(), reached: over * setting.0, at }.into())
             }
         }
     }
 
-    /// Sides flipped where triangles are sharp, within the same limits: where lines of the surface run together, and where a
+    /// Flips sides where triangles are sharp, within the same limits: where lines of the surface run together, and where a
     /// border runs along one of them.
-    pub(crate) fn raise(&self, triangulation: &mut Triangulation) {
+    pub(crate) fn flip_sharp(&self, triangulation: &mut Triangulation) {
         let limits = if self.surface.is_flat() { &Limits::default() } else { &self.limits };
         let (twins, normals) = (self.outline.twins(), limit_table::Normals::default());
-        triangulation.raise(SHARP, &|triangulation, [a, b], both| {
-            let keeps = |c: &[u32; 3]| limit_table::load_of_upright(self.chart, triangulation, *c, limits, &normals) <= 1.0;
+        triangulation.flip_sharp(MIN_UNFLIPPED_QUALITY, &|triangulation, [a, b], both| {
+            let keeps = |c: &[u32; 3]| limit_table::ratio_of_upright(self.chart, triangulation, *c, limits, &normals) <= 1.0;
             !triangulation.joined_elsewhere(&twins, a, b) && both.iter().all(keeps)
         });
     }
 
-    /// Fewer triangles for the same limits.
-    pub(crate) fn thin(&self, triangulation: &mut Triangulation, job: &Job) -> Result<()> {
-        allow(THINNED * triangulation.tri.len() as u64, &mut 0);
+    /// Coarsens the triangulation within the same limits.
+    pub(crate) fn coarsen(&self, triangulation: &mut Triangulation, job: &Job) -> Result<()> {
+        allow(COARSENING_WORK * triangulation.tri.len() as u64, &mut 0);
         let limits = if self.surface.is_flat() { &Limits::default() } else { &self.limits };
         let normals = limit_table::Normals::default();
         let bound =
-            |triangulation: &Triangulation, c: [u32; 3]| limit_table::load_of_upright(self.chart, triangulation, c, limits, &normals);
+            |triangulation: &Triangulation, c: [u32; 3]| limit_table::ratio_of_upright(self.chart, triangulation, c, limits, &normals);
         let twins = self.outline.twins();
         let allowed = |triangulation: &Triangulation, a: u32, b: u32| {
             self.longest.allows(triangulation, a, b) && !triangulation.joined_elsewhere(&twins, a, b)
         };
         let point = |xy: DVec2| self.chart.spot(xy).p;
-        Thinner { bound: &bound, allowed: &allowed, point: &point }.thin(triangulation, job)?;
+        Coarsener { bound: &bound, allowed: &allowed, point: &point }.coarsen(triangulation, job)?;
         triangulation.compact();
         Ok(())
     }

@@ -4,54 +4,54 @@ use glam::{DVec2, DVec3};
 
 use crate::mesh::chart::outline::is_left;
 
-/// Nodes round a cell that is filled by looking at all its triangulations.
-pub const MOST: usize = 12;
-/// Errors that differ by less count as one; then the larger least angle is better.
-const ERROR_RATIO_EQUAL: f64 = 0.99;
+/// Largest number of nodes round a cell whose triangulations are searched.
+pub const MAX_NODES: usize = 12;
+/// Ratio of errors that count as equal: then the larger least angle is better.
+const EQUAL_ERROR_RATIO: f64 = 0.99;
 
 /// The triangles of a cell, by the places of their corners in its polygon, and the worst error among them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Filling {
-    /// Corners, counter-clockwise.
+    /// CellCorners, counter-clockwise.
     pub triangles: Vec<[usize; 3]>,
     /// The worst error over the limit.
-    pub load: f64,
+    pub ratio: f64,
 }
 
-/// How good some triangles are: their worst error, and the largest cosine of an angle.
+/// The quality of some triangles: their worst error over the limit, and the largest cosine of an angle.
 #[derive(Clone, Copy, Debug)]
-struct Worth {
-    load: f64,
+struct FillingQuality {
+    ratio: f64,
     sharpest: f64,
 }
 
-impl Worth {
-    const BEST: Self = Self { load: 0.0, sharpest: -1.0 };
+impl FillingQuality {
+    const BEST: Self = Self { ratio: 0.0, sharpest: -1.0 };
 
     fn and(self, other: Self) -> Self {
-        Self { load: self.load.max(other.load), sharpest: self.sharpest.max(other.sharpest) }
+        Self { ratio: self.ratio.max(other.ratio), sharpest: self.sharpest.max(other.sharpest) }
     }
 
     fn beats(&self, other: &Self) -> bool {
-        if self.load < ERROR_RATIO_EQUAL * other.load {
+        if self.ratio < EQUAL_ERROR_RATIO * other.ratio {
             return true;
         }
-        other.load >= ERROR_RATIO_EQUAL * self.load && self.sharpest < other.sharpest
+        other.ratio >= EQUAL_ERROR_RATIO * self.ratio && self.sharpest < other.sharpest
     }
 }
 
-/// The triangulation of a polygon, counter-clockwise, whose worst error `load` is least, and of those the one with the largest
+/// The triangulation of a polygon, counter-clockwise, whose worst error `ratio` is least, and of those the one with the largest
 /// least angle (by dynamic programming [Klincsek 1980]). Triangles with an error above `most` are left out.
 ///
 /// `None` where there is none.
-pub fn fill(at: &[DVec2], p: &[DVec3], most: f64, load: &dyn Fn([usize; 3]) -> f64) -> Option<Filling> {
+pub fn fill(at: &[DVec2], p: &[DVec3], most: f64, ratio: &dyn Fn([usize; 3]) -> f64) -> Option<Filling> {
     let n = at.len();
-    if !(3..=MOST).contains(&n) {
+    if !(3..=MAX_NODES).contains(&n) {
         return None;
     }
-    let mut best: Vec<Option<(Worth, usize)>> = vec![None; n * n];
+    let mut best: Vec<Option<(FillingQuality, usize)>> = vec![None; n * n];
     for i in 0..n - 1 {
-        best[i * n + i + 1] = Some((Worth::BEST, i));
+        best[i * n + i + 1] = Some((FillingQuality::BEST, i));
     }
     for reach in 2..n {
         for i in 0..n - reach {
@@ -61,23 +61,23 @@ pub fn fill(at: &[DVec2], p: &[DVec3], most: f64, load: &dyn Fn([usize; 3]) -> f
                 if !is_left(at[i], at[j], at[k]) {
                     continue;
                 }
-                // What the parts beside it cost alone is too much.
-                let least = a.0.load.max(b.0.load);
-                if best[i * n + k].is_some_and(|(known, _)| known.load < ERROR_RATIO_EQUAL * least) {
+                // The parts beside it alone exceed the best error.
+                let least = a.0.ratio.max(b.0.ratio);
+                if best[i * n + k].is_some_and(|(known, _)| known.ratio < EQUAL_ERROR_RATIO * least) {
                     continue;
                 }
-                let error = load([i, j, k]);
+                let error = ratio([i, j, k]);
                 if error > most {
                     continue;
                 }
-                let all = Worth { load: error, sharpest: sharpest(p[i], p[j], p[k]) }.and(a.0).and(b.0);
+                let all = FillingQuality { ratio: error, sharpest: sharpest(p[i], p[j], p[k]) }.and(a.0).and(b.0);
                 if best[i * n + k].is_none_or(|(known, _)| all.beats(&known)) {
                     best[i * n + k] = Some((all, j));
                 }
             }
         }
     }
-    let worth = best[n - 1]?.0;
+    let quality = best[n - 1]?.0;
     let mut triangles = Vec::with_capacity(n - 2);
     let mut open = vec![(0, n - 1)];
     while let Some((i, k)) = open.pop() {
@@ -88,7 +88,7 @@ pub fn fill(at: &[DVec2], p: &[DVec3], most: f64, load: &dyn Fn([usize; 3]) -> f
         triangles.push([i, j, k]);
         open.extend([(i, j), (j, k)]);
     }
-    Some(Filling { triangles, load: worth.load })
+    Some(Filling { triangles, ratio: quality.ratio })
 }
 
 /// The largest cosine of an angle; 1 for what has no area.
@@ -101,10 +101,10 @@ fn sharpest(a: DVec3, b: DVec3, c: DVec3) -> f64 {
 mod tests {
     use super::*;
 
-    fn filled(at: &[(f64, f64)], load: impl Fn([usize; 3]) -> f64) -> Filling {
+    fn filled(at: &[(f64, f64)], ratio: impl Fn([usize; 3]) -> f64) -> Filling {
         let at: Vec<DVec2> = at.iter().map(|p| DVec2::from(*p)).collect();
         let p: Vec<DVec3> = at.iter().map(|p| p.extend(0.0)).collect();
-        fill(&at, &p, f64::INFINITY, &load).unwrap()
+        fill(&at, &p, f64::INFINITY, &ratio).unwrap()
     }
 
     #[test]
@@ -112,7 +112,7 @@ mod tests {
         let square = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
         for worse in [[0, 1, 2], [0, 1, 3]] {
             let found = filled(&square, |t| if t == worse { 2.0 } else { 1.0 });
-            assert!(found.load == 1.0 && !found.triangles.contains(&worse), "{found:?}");
+            assert!(found.ratio == 1.0 && !found.triangles.contains(&worse), "{found:?}");
         }
         let kite = [(0.0, 0.0), (4.0, -1.0), (8.0, 0.0), (4.0, 1.0)];
         assert!(filled(&kite, |_| 0.5).triangles.contains(&[0, 1, 3]));

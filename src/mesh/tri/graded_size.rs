@@ -5,14 +5,7 @@ use glam::{DVec2, DVec3};
 use crate::base::par;
 use crate::mesh::chart::parametric_surface::{ParametricSurface, SizeField};
 use crate::mesh::request::sources::Sources;
-
-/// Grid lines along the longer side of the chart by which its lines are chosen, and most of them.
-const LINES: (usize, usize) = (12, 384);
-/// Distance of grid lines over the mean length wanted.
-const APART: f64 = 2.0;
-
-/// Ratio of the lengths round a cell from which they are not one.
-const UNEVEN: f64 = 2.0;
+use crate::mesh::tri::placement_settings::BACKGROUND;
 
 /// Lengths at the nodes of a grid, read between them by the mean of the four round a place.
 #[derive(Clone, Debug)]
@@ -28,20 +21,20 @@ pub struct Background {
 impl Background {
     /// A grid over a box of the chart with the length `of` each place; `growth` is the largest ratio of neighbouring edges.
     ///
-    /// The grid is as fine as the lengths it is for: a first, coarse one tells those.
+    /// The distance of grid lines follows from the mean length, which a first, coarse grid has.
     pub fn new(
         chart_surface: &dyn ParametricSurface,
         (low, high): (DVec2, DVec2),
         growth: f64,
         of: &(impl Fn(DVec2) -> f64 + Sync),
     ) -> Self {
-        let first = Self::with_lines(LINES.0, chart_surface, (low, high), growth, of);
+        let first = Self::with_lines(BACKGROUND.first_lines, chart_surface, (low, high), growth, of);
         let mean = first.size.iter().map(|h| 1.0 / (h * h)).sum::<f64>() / first.size.len() as f64;
-        let wished = (high - low).max_element() * mean.sqrt() / APART;
-        if wished <= LINES.0 as f64 {
+        let lines = (high - low).max_element() * mean.sqrt() / BACKGROUND.line_spacing;
+        if lines <= BACKGROUND.first_lines as f64 {
             return first;
         }
-        Self::with_lines((wished as usize).min(LINES.1), chart_surface, (low, high), growth, of)
+        Self::with_lines((lines as usize).min(BACKGROUND.max_lines), chart_surface, (low, high), growth, of)
     }
 
     fn with_lines(
@@ -73,13 +66,13 @@ impl Background {
         let (i, j) = ((at.x as usize).min(self.n.0 - 2), (at.y as usize).min(self.n.1 - 2));
         let round = [j * self.n.0 + i, j * self.n.0 + i + 1, (j + 1) * self.n.0 + i, (j + 1) * self.n.0 + i + 1];
         let [least, most] = [f64::min, f64::max].map(|f| round.into_iter().map(|k| self.size[k]).reduce(f).unwrap_or(size));
-        let share = (most > UNEVEN * least).then(|| (size / self.size(xy, DVec3::ZERO)).min(1.0));
+        let share = (most > BACKGROUND.max_even_ratio * least).then(|| (size / self.size(xy, DVec3::ZERO)).min(1.0));
         for k in round {
             self.size[k] = self.size[k].min(share.map_or(size, |share| share * self.size[k]));
         }
     }
 
-    /// Makes all lengths so many times as large.
+    /// Multiplies all lengths.
     pub fn scale(&mut self, by: f64) {
         self.size.iter_mut().for_each(|size| *size *= by);
     }
@@ -147,14 +140,14 @@ pub struct GradedSize<'a> {
 }
 
 impl GradedSize<'_> {
-    /// The least distance of nodes that is asked for anywhere, or less.
+    /// A lower bound of the wanted distances of nodes.
     pub fn least(&self) -> f64 {
         let by_bends = self.background.as_ref().map_or(f64::INFINITY, |b| b.size.iter().copied().fold(f64::INFINITY, f64::min));
         let (most, least) = self.range;
         (self.sources.least().min(most) * self.spacing).min(by_bends).max(least * self.spacing)
     }
 
-    /// The distance of nodes that bends ask for.
+    /// The distance of nodes that bends demand.
     pub fn by_bends(&self, xy: DVec2, p: DVec3) -> f64 {
         self.background.as_ref().map_or(f64::INFINITY, |b| b.size(xy, p))
     }
@@ -163,7 +156,7 @@ impl GradedSize<'_> {
 impl SizeField for GradedSize<'_> {
     fn size(&self, xy: DVec2, p: DVec3) -> f64 {
         let (most, least) = self.range;
-        // What bends allow is all that sources are asked about.
+        // Sources are evaluated up to what bends allow.
         let bends = self.by_bends(xy, p).min(most * self.spacing);
         self.sources.who(p, bends / self.spacing).map_or(bends, |found| found.size * self.spacing).max(least * self.spacing)
     }

@@ -1,9 +1,10 @@
-//! Cells between lines of constant u and v: boxes halved by one direction at a time, each only where it has to be.
+//! IsolineCells between lines of constant u and v: boxes halved by one direction at a time, each only where it has to be.
 //!
-//! Lines that run through all of a face would be made everywhere for one place that asks for them; cells are halved alone, and
-//! what is fine beside what is not meets it node to node [Piegl & Tiller 1998]. A cut starts where one beyond
+//! Lines that run through all of a face would be needed everywhere for one place that demands them; cells are halved alone, and
+//! fine cells meet coarse ones node to node [Piegl & Tiller 1998]. A cut starts where one beyond
 //! the side of its cell ends, or at a node of a straight border, when there is one near its place, and else at a value that is
-//! cut elsewhere when one is very near: lines go on from cell to cell. Kink lines are cut first. Whether a border crosses a cell is decided exactly.
+//! cut elsewhere when one is very near: lines go on from cell to cell. Kink lines are cut first. Whether a border crosses a cell is
+//! decided exactly.
 
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
@@ -12,11 +13,21 @@ use glam::DVec2;
 
 use crate::base::tolerance::NUDGE;
 use crate::mesh::request::decider::Why;
+use crate::mesh::tri::placement_settings::ISOLINES;
 use crate::mesh::tri::tree::{Class, Tree, meets};
+
+/// A direction across which a cell is cut, and the number of parts it is cut into in the end, two at least.
+#[derive(Clone, Copy, Debug)]
+pub struct Cut {
+    /// 0: across u, 1: across v.
+    pub axis: usize,
+    /// Parts.
+    pub parts: u32,
+}
 
 /// A box of (u, v).
 #[derive(Clone, Debug)]
-pub struct Cell {
+pub struct IsolineCell {
     /// Least u and v.
     pub low: DVec2,
     /// Largest u and v.
@@ -25,7 +36,7 @@ pub struct Cell {
     pub class: Class,
     /// Border segments that meet it or run along it.
     pub segments: Vec<u32>,
-    /// What made it this small.
+    /// The cause of its size.
     pub why: Why,
     /// First of two children; 0: it is a leaf.
     child: u32,
@@ -33,7 +44,7 @@ pub struct Cell {
     cut: (usize, f64),
 }
 
-impl Cell {
+impl IsolineCell {
     /// Whether it is not cut.
     pub fn is_leaf(&self) -> bool {
         self.child == 0
@@ -46,11 +57,11 @@ impl Cell {
 }
 
 /// The cells of a face.
-pub struct Cells<'a> {
+pub struct IsolineCells<'a> {
     segments: &'a [[DVec2; 2]],
     /// Only what bounds the face, for whether a place is inside.
     loops: Tree<'a>,
-    cells: Vec<Cell>,
+    cells: Vec<IsolineCell>,
     /// What is nearer than this is at one place, in u and v.
     pub near: DVec2,
     /// Values of u and of v at nodes of straight borders round all, with the value that stands for them: where two such borders
@@ -84,10 +95,7 @@ impl Ord for Sorted {
     }
 }
 
-/// Share of a cell about its middle in which cuts are drawn to nodes of borders.
-const DRAWN: f64 = 0.25;
-
-impl<'a> Cells<'a> {
+impl<'a> IsolineCells<'a> {
     /// One cell round all segments, of which the first `loops` bound the face. `kinks` are the values of u and of v that no
     /// cell may run across.
     pub fn new(segments: &'a [[DVec2; 2]], loops: usize, kinks: [Vec<f64>; 2]) -> Self {
@@ -118,7 +126,7 @@ impl<'a> Cells<'a> {
         cells
     }
 
-    fn cell(&self, (low, high): (DVec2, DVec2), mut segments: Vec<u32>, why: Why) -> Cell {
+    fn cell(&self, (low, high): (DVec2, DVec2), mut segments: Vec<u32>, why: Why) -> IsolineCell {
         let around = (low - self.near, high + self.near);
         segments.retain(|s| meets(self.segments[*s as usize], around));
         let inner = (low + self.near, high - self.near);
@@ -129,11 +137,11 @@ impl<'a> Cells<'a> {
         } else {
             Class::Exterior
         };
-        Cell { low, high, class, segments, why, child: 0, cut: (0, 0.0) }
+        IsolineCell { low, high, class, segments, why, child: 0, cut: (0, 0.0) }
     }
 
     /// All cells, parents before their children.
-    pub fn all(&self) -> &[Cell] {
+    pub fn all(&self) -> &[IsolineCell] {
         &self.cells
     }
 
@@ -169,22 +177,22 @@ impl<'a> Cells<'a> {
 
     /// The kink line inside a cell that is nearest to its middle.
     fn kink(&self, k: u32, axis: usize) -> Option<f64> {
-        let Cell { low, high, .. } = &self.cells[k as usize];
+        let IsolineCell { low, high, .. } = &self.cells[k as usize];
         let inside = |x: &&f64| **x > low[axis] + self.near[axis] && **x < high[axis] - self.near[axis];
         nearest(self.kinks[axis].iter().filter(inside), 0.5 * (low[axis] + high[axis]))
     }
 
     /// Whether a cell can be cut across a direction.
     pub fn divisible(&self, k: u32, axis: usize) -> bool {
-        self.cells[k as usize].width()[axis] > LEAST * self.near[axis]
+        self.cells[k as usize].width()[axis] > ISOLINES.min_cut_width * self.near[axis]
     }
 
-    /// Where a cell that wants `parts` parts is cut across a direction: with half of them on each side.
+    /// Where a cell that is cut into `parts` parts is cut first: with half of them on each side.
     fn place(&self, k: u32, axis: usize, parts: u32) -> f64 {
-        let Cell { low, high, .. } = &self.cells[k as usize];
+        let IsolineCell { low, high, .. } = &self.cells[k as usize];
         let width = high[axis] - low[axis];
         let wanted = low[axis] + width * f64::from(parts / 2) / f64::from(parts);
-        let reach = (DRAWN * width).min(width / f64::from(parts));
+        let reach = (ISOLINES.snap_to_node * width).min(width / f64::from(parts));
         let drawn = |side: f64| {
             let (from, to) = ((Sorted(side), Sorted(wanted - reach)), (Sorted(side), Sorted(wanted + reach)));
             self.ends[axis].range(from..=to).map(|end| end.1.0).collect::<Vec<f64>>()
@@ -193,14 +201,15 @@ impl<'a> Cells<'a> {
         let both = nearest(below.iter().filter(|x| above.contains(x)), wanted);
         let any = || nearest(below.iter().chain(&above), wanted);
         let alike = || {
-            let reach = reach * SAME_CUT_SHARE;
+            let reach = reach * ISOLINES.snap_to_cut;
             nearest(self.cuts[axis].range(Sorted(wanted - reach)..=Sorted(wanted + reach)).map(|x| &x.0), wanted)
         };
         self.kink(k, axis).or(both).or_else(any).or_else(alike).unwrap_or(wanted)
     }
 
-    /// Cuts a leaf that wants so many parts, two at least, across a direction.
-    pub fn split(&mut self, k: u32, (axis, parts): (usize, u32), why: Why) {
+    /// Cuts a leaf once.
+    pub fn split(&mut self, k: u32, cut: Cut, why: Why) {
+        let Cut { axis, parts } = cut;
         let at = self.place(k, axis, parts);
         let parent = &mut self.cells[k as usize];
         let (low, high) = (parent.low, parent.high);
@@ -214,7 +223,7 @@ impl<'a> Cells<'a> {
         let children = [self.cell((low, middle_high), segments.clone(), why), self.cell((middle_low, high), segments, why)];
         let first = self.cells.len() as u32;
         (self.cells[k as usize].child, self.cells[k as usize].cut) = (first, (axis, at));
-        let is_whole = |cell: &Cell| usize::from(cell.class == Class::Interior);
+        let is_whole = |cell: &IsolineCell| usize::from(cell.class == Class::Interior);
         self.whole += children.iter().map(is_whole).sum::<usize>();
         self.whole -= is_whole(&self.cells[k as usize]).min(self.whole);
         self.cells.extend(children);
@@ -229,7 +238,7 @@ impl<'a> Cells<'a> {
     pub fn find(&self, at: DVec2, after: [bool; 2]) -> u32 {
         let mut k = 0;
         while !self.cells[k as usize].is_leaf() {
-            let Cell { child, cut: (axis, cut), .. } = &self.cells[k as usize];
+            let IsolineCell { child, cut: (axis, cut), .. } = &self.cells[k as usize];
             let beyond = match at[*axis].total_cmp(cut) {
                 Ordering::Less => false,
                 Ordering::Equal => after[*axis],
@@ -249,9 +258,6 @@ impl<'a> Cells<'a> {
     }
 }
 
-/// Share of that within which a value is taken that is cut elsewhere.
-const SAME_CUT_SHARE: f64 = 0.2;
-
 /// Values of two sides, each with the one that stands for it; sorted.
 fn facing(first: &[f64], second: &[f64]) -> Vec<(f64, f64)> {
     let gap = |all: &[f64], k: usize| {
@@ -261,7 +267,7 @@ fn facing(first: &[f64], second: &[f64]) -> Vec<(f64, f64)> {
     let stands = |(k, x): (usize, &f64)| {
         let other = first.iter().enumerate().min_by(|a, b| (a.1 - x).abs().total_cmp(&(b.1 - x).abs()));
         match other {
-            Some((j, y)) if (x - y).abs() <= FACING * gap(second, k).min(gap(first, j)) => (*x, *y),
+            Some((j, y)) if (x - y).abs() <= ISOLINES.max_facing_offset * gap(second, k).min(gap(first, j)) => (*x, *y),
             _ => (*x, *x),
         }
     };
@@ -270,12 +276,6 @@ fn facing(first: &[f64], second: &[f64]) -> Vec<(f64, f64)> {
     all.dedup();
     all
 }
-
-/// Nodes face each other when the line between them is off by no more than this share of the way to the next ones.
-const FACING: f64 = 0.2;
-
-/// Least width of a cell that is cut, in places that count as one.
-const LEAST: f64 = 16.0;
 
 /// The value nearest to another.
 fn nearest<'v>(values: impl Iterator<Item = &'v f64>, to: f64) -> Option<f64> {

@@ -1,5 +1,5 @@
 //! A face between lines of constant u and v [Jeong & Park 2000]: whole cells in two triangles or a few more, what
-//! borders cross by one constrained triangulation, and cells cut until every triangle keeps the limits for sure.
+//! borders cross by one constrained triangulation, and cells cut until every triangle is proved to keep the limits.
 
 pub mod beside;
 pub mod corners;
@@ -20,20 +20,16 @@ use crate::mesh::request::decider::{Decider, Tally};
 use crate::mesh::request::limits::Limits;
 use crate::mesh::request::sources::Sources;
 use crate::mesh::tri::fill::{Filling, fill};
-use crate::mesh::tri::isoline::Cells;
+use crate::mesh::tri::isoline::{Cut, IsolineCells};
 use crate::mesh::tri::isoline_mesh::beside::sorted;
-use crate::mesh::tri::isoline_mesh::corners::{Corners, polygon};
-use crate::mesh::tri::isoline_mesh::cut::Cut;
-use crate::mesh::tri::limit_table::{self, LimitRatio, Normals};
+use crate::mesh::tri::isoline_mesh::corners::{CellCorners, polygon};
+use crate::mesh::tri::limit_table::{self, LimitRatios, Normals};
+use crate::mesh::tri::placement_settings::ISOLINES;
 use crate::mesh::tri::tree::Class;
 use crate::mesh::tri::triangulation::Triangulation;
 use crate::mesh::tri::trouble::Trouble;
 
-/// Work of a cell and of a node of a border in one try, in evaluations of the surface: all are sorted and looked through anew.
-const CELL_WORK: u64 = 20;
-const NODE_WORK: u64 = 8;
-
-/// What a face is laid out by.
+/// A face to be triangulated between isolines.
 pub struct IsolineInput<'a> {
     /// The surface in its chart.
     pub chart: &'a Chart,
@@ -56,15 +52,15 @@ pub struct IsolineInput<'a> {
 /// Why there is no mesh.
 #[derive(Clone, Copy, Debug)]
 pub enum Failure {
-    /// As with any method.
+    /// One of any method.
     Trouble(Trouble),
-    /// A limit asks for less than the floor: the length it asks for, and where.
+    /// A limit demands a length below the floor: that length, and where.
     Floor(f64, DVec3),
-    /// A limit is not met: how often it is exceeded, and where.
-    Missed(LimitRatio, DVec3),
+    /// A limit is not kept: the ratios, and where.
+    Missed(LimitRatios, DVec3),
 }
 
-/// A face laid out.
+/// A face triangulated between isolines.
 pub struct IsolineMesh {
     /// Its triangles.
     pub triangulation: Triangulation,
@@ -74,35 +70,33 @@ pub struct IsolineMesh {
     pub deciders: Vec<Decider>,
 }
 
-type Tried<T> = std::result::Result<T, Failure>;
+type IsolineResult<T> = std::result::Result<T, Failure>;
 
-/// Times that what does not keep the limits is cut.
-const ROUNDS: usize = 64;
-
-/// Lays a face out; the outer result is an interruption.
-pub fn lay(ask: &IsolineInput, job: &Job) -> Result<Tried<IsolineMesh>> {
-    let outline = ask.outline;
-    let at: Vec<DVec2> = outline.xy.iter().map(|xy| DVec2::from(ask.chart.uv(*xy))).collect();
+/// Triangulates a face; the outer result is an interruption.
+pub fn mesh_isolines(input: &IsolineInput, job: &Job) -> Result<IsolineResult<IsolineMesh>> {
+    let outline = input.outline;
+    let at: Vec<DVec2> = outline.xy.iter().map(|xy| DVec2::from(input.chart.uv(*xy))).collect();
     let mut segments: Vec<[DVec2; 2]> = outline.edges().map(|e| e.map(|n| at[n as usize])).collect();
     // Single nodes inside count as segments without length.
     let mut alone = vec![true; at.len()];
     outline.edges().flatten().for_each(|n| alone[n as usize] = false);
     segments.extend((0..at.len()).filter(|n| alone[*n]).map(|n| [at[n]; 2]));
-    let kinks = if ask.limits.chord.is_some() { kinks(ask.chart) } else { Default::default() };
-    let cells = Cells::new(&segments, outline.loops.len(), kinks);
-    let mut work = Work { ask, at, cells, known: BTreeMap::new(), fillings: BTreeMap::new(), normals: Normals::default(), worst: None };
-    let mut again = work.settle(vec![0]);
-    for _ in 0..ROUNDS {
+    let kinks = if input.limits.chord.is_some() { kinks(input.chart) } else { Default::default() };
+    let cells = IsolineCells::new(&segments, outline.loops.len(), kinks);
+    let mut mesher =
+        IsolineMesher { input, at, cells, points: BTreeMap::new(), fillings: BTreeMap::new(), normals: Normals::default(), worst: None };
+    let mut again = mesher.settle(vec![0]);
+    for _ in 0..ISOLINES.max_rounds {
         job.go_on()?;
         if let Err(failure) = again {
             return Ok(Err(failure));
         }
-        match work.round() {
-            Ok(Some(laid)) => return Ok(Ok(laid)),
+        match mesher.round() {
+            Ok(Some(mesh)) => return Ok(Ok(mesh)),
             other => again = other.map(|_| ()),
         }
     }
-    Ok(again.and_then(|()| Err(work.missed())))
+    Ok(again.and_then(|()| Err(mesher.missed())))
 }
 
 /// Values of u and of v at which directions jump; over seams they come again.
@@ -111,47 +105,51 @@ fn kinks(chart: &Chart) -> [Vec<f64>; 2] {
     [us, vs].map(|all| all.iter().flat_map(|x| [x - 1.0, *x, x + 1.0]).collect())
 }
 
-/// The points of a polygon and what fills it.
-type Known = (Vec<DVec3>, Option<Filling>);
-
-struct Work<'a> {
-    ask: &'a IsolineInput<'a>,
-    /// Places of the border's nodes in (u, v).
-    at: Vec<DVec2>,
-    cells: Cells<'a>,
-    /// Points by the bits of their (u, v).
-    known: BTreeMap<(u64, u64), DVec3>,
-    /// By cell.
-    fillings: BTreeMap<u32, Known>,
-    normals: Normals,
-    /// The worst triangle seen in the last round.
-    worst: Option<(LimitRatio, DVec3)>,
+/// The points round a cell, and its triangles.
+struct CellFilling {
+    p: Vec<DVec3>,
+    filling: Option<Filling>,
 }
 
-impl Work<'_> {
+/// The triangulation between isolines at work.
+struct IsolineMesher<'a> {
+    input: &'a IsolineInput<'a>,
+    /// Places of the border's nodes in (u, v).
+    at: Vec<DVec2>,
+    cells: IsolineCells<'a>,
+    /// Points by the bits of their (u, v).
+    points: BTreeMap<(u64, u64), DVec3>,
+    /// By cell.
+    fillings: BTreeMap<u32, CellFilling>,
+    normals: Normals,
+    /// The worst triangle seen in the last round.
+    worst: Option<(LimitRatios, DVec3)>,
+}
+
+impl IsolineMesher<'_> {
     fn missed(&self) -> Failure {
-        let (load, at) = self.worst.unwrap_or_default();
-        Failure::Missed(load, at)
+        let (ratio, at) = self.worst.unwrap_or_default();
+        Failure::Missed(ratio, at)
     }
 
     fn place(&self, at: DVec2) -> DVec2 {
-        self.ask.chart.clamp(self.ask.chart.xy(at.into()))
+        self.input.chart.clamp(self.input.chart.xy(at.into()))
     }
 
     fn point(&mut self, at: DVec2) -> DVec3 {
         let key = (at.x.to_bits(), at.y.to_bits());
-        if let Some(p) = self.known.get(&key) {
+        if let Some(p) = self.points.get(&key) {
             return *p;
         }
-        let p = self.ask.chart.spot(self.place(at)).p;
-        self.known.insert(key, p);
+        let p = self.input.chart.spot(self.place(at)).p;
+        self.points.insert(key, p);
         p
     }
 
-    /// One try: the triangles, or cells cut where they do not keep the limits.
-    fn round(&mut self) -> Tried<Option<IsolineMesh>> {
-        let outline = self.ask.outline;
-        work::spend(CELL_WORK * self.cells.all().len() as u64 + NODE_WORK * self.at.len() as u64);
+    /// One round: the triangles, or cells cut where they exceed the limits.
+    fn round(&mut self) -> IsolineResult<Option<IsolineMesh>> {
+        let outline = self.input.outline;
+        work::spend(ISOLINES.cell_work * self.cells.all().len() as u64 + ISOLINES.node_work * self.at.len() as u64);
         let mut corners = self.corners();
         let mut triangulation = Triangulation::default();
         (triangulation.p, triangulation.xy, triangulation.fixed) = (outline.p.clone(), outline.xy.clone(), outline.p.len() as u32);
@@ -166,7 +164,7 @@ impl Work<'_> {
                 triangulation.xy.push(self.place(corner.at));
             }
         }
-        if triangulation.p.len() > self.ask.most {
+        if triangulation.p.len() > self.input.most {
             return Err(Failure::Trouble(Trouble::Full));
         }
         let (sure, bad) = self.whole(&corners, &triangulation);
@@ -175,14 +173,14 @@ impl Work<'_> {
         }
         let (all, kept) = self.triangulated(&triangulation, &sure)?;
         let sure: BTreeSet<[u32; 3]> = sure.into_iter().map(sorted).collect();
-        let bad = self.beside(&triangulation, (&all, &kept), &sure);
+        let bad = self.beside(&triangulation, &all, &kept, &sure);
         if self.worst.is_some() {
             if bad.is_empty() {
                 return Err(self.missed());
             }
             return self.cut(bad).map(|()| None);
         }
-        triangulation.size = vec![self.ask.size; triangulation.p.len()];
+        triangulation.size = vec![self.input.size; triangulation.p.len()];
         let tally = self.tally(&corners);
         let deciders = self.deciders(&corners, &triangulation);
         let mut triangulation = Triangulation::new(triangulation.p, triangulation.xy, triangulation.size, triangulation.fixed, &all, &kept);
@@ -191,8 +189,8 @@ impl Work<'_> {
         Ok(Some(IsolineMesh { triangulation, tally, deciders }))
     }
 
-    /// Triangles of the cells that no border crosses, and the cells of which some do not keep the limits.
-    fn whole(&mut self, corners: &Corners, triangulation: &Triangulation) -> (Vec<[u32; 3]>, Vec<(u32, Cut)>) {
+    /// Triangles of the cells that no border crosses, and the cells of which some exceed the limits, with their cuts.
+    fn whole(&mut self, corners: &CellCorners, triangulation: &Triangulation) -> (Vec<[u32; 3]>, Vec<(u32, Cut)>) {
         let (mut sure, mut bad) = (Vec::new(), Vec::new());
         for k in 0..self.cells.all().len() as u32 {
             let cell = &self.cells.all()[k as usize];
@@ -203,19 +201,20 @@ impl Work<'_> {
             let Some(round) = polygon(corners, bounds) else { continue };
             let nodes: Vec<u32> = round.iter().filter_map(|c| corners.node[*c]).collect();
             let p: Vec<DVec3> = nodes.iter().map(|n| triangulation.p[*n as usize]).collect();
-            if self.fillings.get(&k).is_none_or(|(known, _)| *known != p) {
+            if self.fillings.get(&k).is_none_or(|known| known.p != p) {
                 let at: Vec<DVec2> = round.iter().map(|c| corners.all[*c].at).collect();
-                let load = |c: [usize; 3]| {
-                    limit_table::load_of_long(self.ask.chart, triangulation, c.map(|i| nodes[i]), self.ask.limits, &self.normals).worst()
+                let ratio = |c: [usize; 3]| {
+                    limit_table::ratio_of_long(self.input.chart, triangulation, c.map(|i| nodes[i]), self.input.limits, &self.normals)
+                        .worst()
                 };
-                let filling = fill(&at, &p, f64::INFINITY, &load);
-                self.fillings.insert(k, (p, filling));
+                let filling = fill(&at, &p, f64::INFINITY, &ratio);
+                self.fillings.insert(k, CellFilling { p, filling });
             }
-            let Some((_, Some(filling))) = self.fillings.get(&k) else { continue };
-            if filling.load <= 1.0 {
+            let Some(CellFilling { filling: Some(filling), .. }) = self.fillings.get(&k) else { continue };
+            if filling.ratio <= 1.0 {
                 sure.extend(filling.triangles.iter().map(|t| t.map(|i| nodes[i])));
-            } else if let Some((axis, _)) = self.best_cut(k, bounds) {
-                bad.push((k, (axis, 2)));
+            } else if let Some(cut) = self.best_cut(k, bounds) {
+                bad.push((k, Cut { parts: 2, ..cut }));
             }
         }
         (sure, bad)

@@ -1,4 +1,4 @@
-//! How long sides inside a face may be: by its size, by what is refined, and by what the border itself has longer.
+//! How long sides inside a face may be: by its size, by what is refined, and by longer steps of the border.
 
 use glam::DVec3;
 
@@ -15,7 +15,7 @@ pub(crate) const LONGEST: f64 = 1.05;
 pub(crate) struct Longest<'a> {
     /// Between inner nodes where nothing is refined.
     pub(crate) inside: f64,
-    /// At each border node: where the border itself has longer steps (a written count), what leans on them is as long.
+    /// At each border node: where the border itself has longer steps (a written count), sides there are as long.
     at_border: Vec<f64>,
     /// Places where they have to be shorter.
     rules: &'a Sources,
@@ -39,13 +39,13 @@ impl<'a> Longest<'a> {
         longest
     }
 
-    /// Sides inside may be longer near steps of the border that are longer than is asked for there (a written count), less so by `slope`
-    /// away from them: elements cannot get shorter from one row to the next at once.
+    /// Sides inside may be longer near steps of the border that are longer than wanted there (a written count), less so by `slope`
+    /// away from them: lengths cannot change at once from one row to the next.
     pub(crate) fn graded(mut self, outline: &Outline, slope: f64) -> Self {
         let step = |edge: [u32; 2]| {
             let [a, b] = edge.map(|n| outline.p[n as usize]);
             let most = LONGEST * outline.length(edge);
-            let is_long = most > self.asked(0.5 * (a + b));
+            let is_long = most > self.wanted(0.5 * (a + b));
             is_long.then_some(Source { body: Body::Segment(a, b), radius: 0.0, size: -most, steep: 1.0, tag: 0 })
         };
         self.steps = Sources::new(outline.edges().filter_map(step).collect(), slope);
@@ -56,8 +56,8 @@ impl<'a> Longest<'a> {
         self
     }
 
-    /// How long sides at a place may be by the sizes that are asked for.
-    fn asked(&self, p: DVec3) -> f64 {
+    /// How long sides at a place may be by the wanted sizes.
+    fn wanted(&self, p: DVec3) -> f64 {
         if self.rules.is_empty() {
             return self.inside;
         }
@@ -66,7 +66,7 @@ impl<'a> Longest<'a> {
     }
 
     fn there(&self, p: DVec3) -> f64 {
-        -self.steps.at(p, -self.asked(p))
+        -self.steps.at(p, -self.wanted(p))
     }
 
     /// How long sides at a node may be, given the points of all nodes.
@@ -79,9 +79,9 @@ impl<'a> Longest<'a> {
         triangulation.p[a as usize].distance(triangulation.p[b as usize]) <= self.at(&triangulation.p, a).max(self.at(&triangulation.p, b))
     }
 
-    /// Those of some triangles with a side inside the face that is too long; those between two border nodes are what they are.
+    /// Those of some triangles with a side inside the face that is too long; sides between two border nodes do not count.
     pub(crate) fn broken(&self, triangulation: &Triangulation, some: &[u32]) -> Vec<u32> {
-        // Where most are looked at, each node is asked once.
+        // For most of the triangles the length at each node is computed once.
         let all = if 2 * some.len() > triangulation.tri.len() { triangulation.p.len() } else { 0 };
         let known: Vec<f64> = par::map(all, |n| self.at(&triangulation.p, n as u32));
         let most = |n: usize| known.get(n).copied().unwrap_or_else(|| self.at(&triangulation.p, n as u32));

@@ -1,11 +1,9 @@
-//! Free faces of triangles: placed by a front or a quadtree, or laid between isolines; optimised, refined, coarsened.
+//! Free faces of triangles: placed by a front or a quadtree, or triangulated between isolines; optimised, refined, coarsened.
 
 pub mod build;
-pub mod cells;
 pub mod coarse;
 pub mod coarsen;
 pub mod fill;
-pub mod fit;
 pub mod front;
 pub mod graded_size;
 pub mod isoline;
@@ -15,10 +13,14 @@ pub mod limit_table;
 pub mod longest;
 pub mod marks;
 pub mod optimize;
+pub mod optimize_settings;
 pub mod pending;
+pub mod placement_settings;
+pub mod point_hash;
 pub mod quadtree;
 pub mod shape;
 pub mod too_large;
 pub mod tree;
+pub mod triangle_fit;
 pub mod triangulation;
 pub mod trouble;

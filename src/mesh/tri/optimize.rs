@@ -4,11 +4,11 @@
 //! [Freitag 1997].
 
 pub mod divide;
+pub mod failed_repairs;
 pub mod flips;
 pub mod local_search;
 pub mod repair;
 pub mod smooth;
-pub mod tried;
 pub mod upright;
 
 use glam::{DVec2, DVec3};
@@ -16,43 +16,42 @@ use glam::{DVec2, DVec3};
 use crate::base::fault::Result;
 use crate::base::job::Job;
 use crate::mesh::chart::parametric_surface::{ParametricSurface, SizeField};
-use crate::mesh::tri::optimize::tried::Tried;
+use crate::mesh::tri::optimize::failed_repairs::FailedRepairs;
+use crate::mesh::tri::optimize_settings::REPAIR;
 use crate::mesh::tri::pending::Pending;
-use crate::mesh::tri::shape::{Rim, Star};
+use crate::mesh::tri::shape::{PatchRim, Star};
 use crate::mesh::tri::triangulation::{Patch, Ring, Triangulation};
 
-/// How the improvement is done.
+/// Settings of the optimization of one face.
 #[derive(Clone, Copy, Debug)]
 pub struct OptimizeSettings {
     /// Rounds of smoothing.
-    pub smooth: usize,
+    pub smoothing_rounds: usize,
     /// Share of the way to the mean of its neighbours that a node is moved.
-    pub beyond: f64,
-    /// A node whose triangles are all at least this good is left where it is.
-    pub fine: f64,
-    /// Triangles below this quality are worked on.
-    pub wanted: f64,
-    /// From this quality on a change has to be worth its while: what is little better is looked at again and again.
-    pub fair: f64,
+    pub relaxation: f64,
+    /// Least quality of the triangles of a node above which it does not move.
+    pub still_quality: f64,
+    /// Quality below which triangles are repaired.
+    pub min_quality: f64,
+    /// Quality from which on a change needs a larger gain: small gains would be repeated again and again.
+    pub fair_quality: f64,
     /// Longest edge over wanted length.
-    pub longest: f64,
+    pub max_length_ratio: f64,
 }
 
-/// What cannot get better by smoothing.
+/// Quality that smoothing does not improve.
 pub const FINEST: f64 = 0.9999;
-/// Rounds of work on bad triangles.
-const ROUNDS: usize = 6;
 
 /// Limits that triangles have to keep.
 pub trait LimitCheck {
-    /// Those of some triangles of a triangulation that break a limit; all others are as they were when it was asked last.
+    /// Those of some triangles of a triangulation that exceed a limit; all others are unchanged since the last call.
     fn broken(&self, triangulation: &Triangulation, some: &[u32]) -> Vec<u32>;
 
-    /// Whether triangles are bounded one by one, so that a change can be asked about ahead.
-    fn foresees(&self) -> bool;
+    /// Whether triangles are bounded one by one, so that a change can be checked before it is made.
+    fn is_per_triangle(&self) -> bool;
 
     /// Whether a triangle would keep the limits, with its first corner moved to a place; that of a new node has no number below
-    /// the border's. Always so where nothing is foreseen.
+    /// the border's. Always so where triangles are not bounded one by one.
     fn keeps(&self, triangulation: &Triangulation, corners: [u32; 3], first: Option<(DVec2, DVec3)>) -> bool;
 }
 
@@ -66,23 +65,23 @@ pub struct MeshOptimizer<'a> {
     pub field: &'a dyn SizeField,
     /// How.
     pub settings: OptimizeSettings,
-    /// What mended triangles have to keep.
+    /// The limits of repaired triangles.
     pub limit_check: Option<&'a dyn LimitCheck>,
     ring: Ring,
-    rim: Rim,
+    rim: PatchRim,
     patch: Patch,
     /// Nodes that may have to move.
     active: Pending,
     /// Nodes that moved since the last flips.
     moved: Pending,
-    /// Nodes that changed since the last mending: what is as it was when nothing helped is left alone.
+    /// Nodes that changed since the last repair: unchanged triangles are not repaired again.
     changed: Pending,
-    /// Nodes that changed since limits were looked at.
+    /// Nodes that changed since limits were checked.
     unseen: Pending,
-    /// What lengths at each node are squeezed by.
-    squeezed: Vec<f64>,
-    /// What could not be mended, and since when.
-    tried: Tried,
+    /// Factor on the wanted length at each node.
+    size_factor: Vec<f64>,
+    /// Triangles that could not be repaired.
+    failed_repairs: FailedRepairs,
 }
 
 impl<'a> MeshOptimizer<'a> {
@@ -94,7 +93,7 @@ impl<'a> MeshOptimizer<'a> {
         settings: OptimizeSettings,
     ) -> Self {
         let all = Pending::all(triangulation.p.len());
-        let squeezed = vec![1.0; triangulation.p.len()];
+        let size_factor = vec![1.0; triangulation.p.len()];
         Self {
             triangulation,
             chart_surface,
@@ -102,24 +101,24 @@ impl<'a> MeshOptimizer<'a> {
             settings,
             limit_check: None,
             ring: Ring::default(),
-            rim: Rim::default(),
+            rim: PatchRim::default(),
             patch: Patch::default(),
             active: all.clone(),
             moved: all.clone(),
             changed: all.clone(),
             unseen: all,
-            squeezed,
-            tried: Tried::default(),
+            size_factor,
+            failed_repairs: FailedRepairs::default(),
         }
     }
 
     /// The first flips and rounds of smoothing: from here on nodes hardly move.
     pub fn settle(&mut self) {
         self.flip_all();
-        if self.settings.smooth > 0 {
-            self.smooth(self.settings.smooth);
+        if self.settings.smoothing_rounds > 0 {
+            self.smooth(self.settings.smoothing_rounds);
             self.flip_all();
-            // What still moves a little is left; what is mended wakes its neighbours.
+            // Small remaining moves are dropped; repair activates its neighbours.
             self.active.clear();
         }
     }
@@ -133,7 +132,7 @@ impl<'a> MeshOptimizer<'a> {
         self.rings_of(nodes)
     }
 
-    /// The same, each node looked at whatever their number.
+    /// The same by the ring of each node.
     fn rings_of(&mut self, nodes: &[u32]) -> Vec<u32> {
         let mut found = Vec::with_capacity(6 * nodes.len());
         for node in nodes {
@@ -145,45 +144,45 @@ impl<'a> MeshOptimizer<'a> {
         found
     }
 
-    /// Works on bad triangles, after [`MeshOptimizer::settle`].
+    /// Repairs bad triangles, after [`MeshOptimizer::settle`].
     pub fn improve(&mut self, job: &Job) -> Result<()> {
-        if self.settings.smooth == 0 {
+        if self.settings.smoothing_rounds == 0 {
             return Ok(());
         }
-        for _ in 0..ROUNDS {
+        for _ in 0..REPAIR.max_rounds {
             job.go_on()?;
             if self.repair() == 0 {
                 break;
             }
-            self.smooth(self.settings.smooth.min(4));
+            self.smooth(self.settings.smoothing_rounds.min(4));
             self.flip_all();
         }
         self.repair_last(job)
     }
 
-    /// What lengths are squeezed by among some nodes.
-    fn squeezed(&self, among: &[u32]) -> f64 {
-        among.iter().map(|n| self.squeezed[*n as usize]).sum::<f64>() / among.len() as f64
+    /// The mean factor on wanted lengths of some nodes.
+    fn mean_size_factor(&self, among: &[u32]) -> f64 {
+        among.iter().map(|n| self.size_factor[*n as usize]).sum::<f64>() / among.len() as f64
     }
 
     /// A patch becomes the star of a node inside it, or of a new one.
     fn restar(&mut self, patch: &Patch, node: Option<u32>, star: &Star) {
-        let squeezed = self.squeezed(&patch.rim);
-        let node = self.triangulation.restar(patch, node, star, self.field.size(star.xy, star.p) * squeezed);
+        let factor = self.mean_size_factor(&patch.rim);
+        let node = self.triangulation.restar(patch, node, star, self.field.size(star.xy, star.p) * factor);
         self.wake_patch(patch);
-        self.squeezed[node as usize] = squeezed;
+        self.size_factor[node as usize] = factor;
     }
 
     /// The nodes of a patch made anew may have to move.
     fn wake_patch(&mut self, patch: &Patch) {
-        self.squeezed.resize(self.triangulation.p.len(), 1.0);
+        self.size_factor.resize(self.triangulation.p.len(), 1.0);
         patch.rim.iter().chain(&patch.inner).for_each(|n| self.touch(*n));
     }
 
     /// The nodes of a triangle may have to move.
     fn wake(&mut self, t: u32) {
         for n in self.triangulation.tri[t as usize] {
-            self.tried.change(n);
+            self.failed_repairs.change(n);
             self.active.add(n);
             self.changed.add(n);
             self.unseen.add(n);
@@ -192,7 +191,7 @@ impl<'a> MeshOptimizer<'a> {
 
     /// A node or its triangles changed.
     fn touch(&mut self, node: u32) {
-        self.tried.change(node);
+        self.failed_repairs.change(node);
         self.active.add(node);
         self.moved.add(node);
         self.changed.add(node);

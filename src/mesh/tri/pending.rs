@@ -1,6 +1,6 @@
 //! Nodes that wait for something, each once.
 
-/// A set of nodes that is filled one by one and taken as a whole.
+/// A set of nodes that is filled one by one and emptied as a whole.
 #[derive(Clone, Debug, Default)]
 pub struct Pending {
     waits: Vec<bool>,

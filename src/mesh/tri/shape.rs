@@ -5,6 +5,7 @@ use glam::{DVec2, DVec3};
 use crate::mesh::chart::outline::area2;
 use crate::mesh::chart::parametric_surface::ParametricSurface;
 use crate::mesh::request::plan::TALL;
+use crate::mesh::tri::optimize_settings::STAR_SEARCH;
 
 /// Twice the ratio of inscribed to circumscribed radius: 1 for an equilateral triangle, 0 for a flat one.
 pub fn quality(a: DVec3, b: DVec3, c: DVec3) -> f64 {
@@ -18,14 +19,14 @@ pub fn quality(a: DVec3, b: DVec3, c: DVec3) -> f64 {
 
 /// A rim of nodes round a place to be found.
 #[derive(Clone, Debug, Default)]
-pub struct Rim {
+pub struct PatchRim {
     /// Points.
     p: Vec<DVec3>,
     /// Places in the chart.
     xy: Vec<DVec2>,
     /// Length of the side from each point to the next.
     sides: Vec<f64>,
-    /// What the triangle over each side was worth when it was looked at last.
+    /// The quality of the triangle over each side at the last call of [`PatchRim::worst`].
     weighed: Vec<f64>,
     /// Longest wanted edge to the place; longer ones count as worse.
     pub longest: f64,
@@ -42,19 +43,7 @@ pub struct Star {
     pub worst: f64,
 }
 
-/// Rounds of the search for the best place.
-const ROUNDS: usize = 12;
-/// Share of the wanted edge below which a step is not worth it.
-const STILL: f64 = 0.002;
-/// What the side of an equilateral triangle weighs.
-const LEAST: f64 = 0.001;
-/// Times the derivatives are taken anew, where what they said of the worst triangle was not so near to what it is.
-const STARTS: usize = 3;
-const TRUE: f64 = 0.01;
-/// Gain that a round must bring.
-const GAIN: f64 = 0.0001;
-
-impl Rim {
+impl PatchRim {
     /// Other nodes round it, with their places in the chart.
     pub fn fill(&mut self, nodes: impl Iterator<Item = (DVec3, DVec2)>) {
         self.p.clear();
@@ -119,7 +108,7 @@ impl Rim {
         if length > self.longest { quality * (self.longest / length) } else { quality }
     }
 
-    /// What no star inside is worth more than, where the rim lies in a plane: a corner falls into two angles of which one is at most
+    /// An upper bound of the worst quality of a star inside, where the rim lies in a plane: a corner falls into two angles of which one is at most
     /// half of it and the other at least, and the best triangle with an angle α has two sides alike beside it, 4 sin(α/2) (1 − sin(α/2)).
     /// On a bent surface it is a guess.
     pub fn ceiling(&self) -> f64 {
@@ -144,11 +133,11 @@ impl Rim {
         (self.xy.iter().copied().sum::<DVec2>() / n, self.p.iter().copied().sum::<DVec3>() / n)
     }
 
-    /// Climbs from a place to one where the worst triangle is as good as it can be. On the way the surface is what its
-    /// derivatives at the start say it is; where that tells too little, from there on what those at the end say.
+    /// Climbs from a place to one where the worst triangle is as good as it can be. On the way the surface is approximated by its
+    /// derivatives at the start; where that is too inaccurate, the search starts again from the end.
     pub fn best(&mut self, chart_surface: &dyn ParametricSurface, from: DVec2, p: DVec3) -> Star {
         let mut star = Star { p, xy: from, worst: self.worst(from, p) };
-        for _ in 0..STARTS {
+        for _ in 0..STAR_SEARCH.max_starts {
             let seen = self.climb(chart_surface, star);
             if seen.xy == star.xy {
                 break;
@@ -161,30 +150,30 @@ impl Rim {
             let places = [seen.xy, chart_surface.clamp(0.5 * (star.xy + seen.xy))].into_iter();
             let Some(there) = places.map(truly).find(|there| there.worst > star.worst) else { break };
             star = there;
-            if (star.worst - seen.worst).abs() <= TRUE {
+            if (star.worst - seen.worst).abs() <= STAR_SEARCH.max_prediction_error {
                 break;
             }
         }
         star
     }
 
-    /// Steps towards the mean of the tips that the sides demand for, the worst ones first.
+    /// Steps towards the mean of the tips that the sides demand, weighted by how bad they are.
     fn climb(&mut self, chart_surface: &dyn ParametricSurface, mut star: Star) -> Star {
         let from = star.xy;
         let near = chart_surface.near(from);
         let mut spot = near.spot(DVec2::ZERO);
         let mut demand = self.demand(star.p);
         let mut share = 1.0;
-        for _ in 0..ROUNDS {
+        for _ in 0..STAR_SEARCH.max_steps {
             let step = demand * share;
-            if step.length() < STILL * self.longest {
+            if step.length() < STAR_SEARCH.min_step * self.longest {
                 break;
             }
             let Some(way) = spot.step(step) else { break };
             let xy = chart_surface.clamp(star.xy + way);
             let new = near.spot(xy - from);
             let worst = self.worst(xy, new.p);
-            if worst > star.worst + GAIN {
+            if worst > star.worst + STAR_SEARCH.min_gain {
                 star = Star { p: new.p, xy, worst };
                 (spot, demand) = (new, self.demand(new.p));
                 share = f64::min(1.0, share * 1.5);
@@ -210,7 +199,7 @@ impl Rim {
             let (side, middle) = (b - a, 0.5 * (a + b));
             let off = p - middle;
             let up = (off - side * (off.dot(side) / (length * length))).normalize_or_zero();
-            let short = (1.0 - self.weighed[i]).max(0.0) + LEAST;
+            let short = (1.0 - self.weighed[i]).max(0.0) + STAR_SEARCH.min_weight;
             let weight = short * short * short * short;
             sum += (middle + up * (TALL * length)) * weight;
             weights += weight;

@@ -11,12 +11,12 @@ use crate::base::predicates::orient;
 /// Deepest level under a root: its squares are a millionth of a root.
 pub const MAX_DEPTH: u8 = 20;
 
-/// Why a tree cannot be refined as far as is wanted.
+/// Why a tree cannot be refined further.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Halt {
     /// There are too many cells.
     Full,
-    /// This cell, of the deepest level, wants to be divided.
+    /// This cell, of the deepest level, would have to be split.
     Deep(u32),
 }
 
@@ -33,7 +33,7 @@ pub enum Class {
 
 /// A square of the tree.
 #[derive(Clone, Debug)]
-pub struct Cell {
+pub struct TreeCell {
     /// Depth under its root, 0…20.
     pub level: u8,
     /// Column and row among all squares of its level.
@@ -46,7 +46,7 @@ pub struct Cell {
     child: u32,
 }
 
-impl Cell {
+impl TreeCell {
     /// Whether it is not divided.
     pub fn is_leaf(&self) -> bool {
         self.child == 0
@@ -60,7 +60,7 @@ pub struct Tree<'a> {
     low: DVec2,
     side: DVec2,
     roots: (u32, u32),
-    cells: Vec<Cell>,
+    cells: Vec<TreeCell>,
     /// Segments of loops by horizontal bands, for the middle of cells.
     bands: Vec<Vec<u32>>,
     high: f64,
@@ -96,7 +96,7 @@ impl<'a> Tree<'a> {
             job::poll();
             let at = (k as u32 % roots.0, k as u32 / roots.0);
             let class = if segments.is_empty() { tree.by_middle(0, at) } else { Class::Partial };
-            tree.cells.push(Cell { level: 0, at, class, segments, child: 0 });
+            tree.cells.push(TreeCell { level: 0, at, class, segments, child: 0 });
         }
         tree
     }
@@ -122,7 +122,7 @@ impl<'a> Tree<'a> {
     }
 
     /// All cells, parents before their children.
-    pub fn cells(&self) -> &[Cell] {
+    pub fn cells(&self) -> &[TreeCell] {
         &self.cells
     }
 
@@ -151,7 +151,7 @@ impl<'a> Tree<'a> {
 
     fn split(&mut self, cell: u32) {
         let first = self.cells.len() as u32;
-        let Cell { level, at, class, .. } = self.cells[cell as usize];
+        let TreeCell { level, at, class, .. } = self.cells[cell as usize];
         let segments = std::mem::take(&mut self.cells[cell as usize].segments);
         for k in 0..4 {
             let at = (2 * at.0 + k % 2, 2 * at.1 + k / 2);
@@ -160,19 +160,19 @@ impl<'a> Tree<'a> {
                 Class::Partial if own.is_empty() => self.by_middle(level + 1, at),
                 other => other,
             };
-            self.cells.push(Cell { level: level + 1, at, class, segments: own, child: 0 });
+            self.cells.push(TreeCell { level: level + 1, at, class, segments: own, child: 0 });
         }
         self.cells[cell as usize].child = first;
     }
 
-    /// Splits leaves for as long as they want it.
+    /// Splits leaves for as long as `needs_split` says so.
     ///
-    /// Fails when there are then more than `most` cells, or one of level 20 wants it.
-    pub fn refine(&mut self, wants: &dyn Fn(&Self, &Cell) -> bool, most: usize) -> Result<(), Halt> {
+    /// Fails when there are then more than `most` cells, or one of level 20 is to be split.
+    pub fn refine(&mut self, needs_split: &dyn Fn(&Self, &TreeCell) -> bool, most: usize) -> Result<(), Halt> {
         let mut k = 0;
         while k < self.cells.len() {
             let cell = &self.cells[k];
-            if cell.is_leaf() && wants(self, cell) {
+            if cell.is_leaf() && needs_split(self, cell) {
                 if cell.level == MAX_DEPTH {
                     return Err(Halt::Deep(k as u32));
                 }
@@ -195,7 +195,7 @@ impl<'a> Tree<'a> {
                 continue;
             }
             for side in 0..4 {
-                let Cell { level, at, .. } = self.cells[k as usize];
+                let TreeCell { level, at, .. } = self.cells[k as usize];
                 // The square of the next coarser level beyond the side must not lie in a larger leaf.
                 let Some(next) = self.beyond(level, at, side) else { continue };
                 if self.cells[next as usize].is_leaf() && self.cells[next as usize].level + 1 < level {

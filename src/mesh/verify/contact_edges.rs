@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use glam::DVec3;
 
 use crate::base::par;
-use crate::mesh::verify::contacts::Scan;
+use crate::mesh::verify::contact_scan::Scan;
 use crate::model::SurfaceId;
 use crate::network::Chain;
 use crate::surface::intersect::with_curve::{SurfaceMeeting, with_curve};
@@ -13,7 +13,7 @@ use crate::surface::{Surface, with_loops};
 
 /// A segment of an edge and a face near it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct Task {
+pub(crate) struct EdgeFace {
     pub segment: usize,
     pub face: usize,
 }
@@ -29,20 +29,26 @@ pub(crate) struct Met {
     pub known: ([Option<DVec3>; 2], f64),
 }
 
-/// A segment as a part of an edge: the place of the edge, arc lengths on it.
-type Place = (usize, (f64, f64));
+/// A segment as a part of an edge.
+#[derive(Clone, Copy)]
+struct SegmentPlace {
+    /// The edge by its number in the layout.
+    edge: usize,
+    /// Arc lengths on it.
+    s: (f64, f64),
+}
 
 /// The meetings of each task; `None` where no curve carries the edge or they could not be found.
-pub(crate) fn meetings(scan: &Scan, tasks: &[Task]) -> Vec<Option<Met>> {
+pub(crate) fn meetings(scan: &Scan, tasks: &[EdgeFace]) -> Vec<Option<Met>> {
     let pieces = &scan.layout.pieces;
     let wanted: BTreeSet<usize> = tasks.iter().map(|t| t.segment).collect();
-    let mut places: BTreeMap<usize, Place> = BTreeMap::new();
+    let mut places: BTreeMap<usize, SegmentPlace> = BTreeMap::new();
     for edge in 0..scan.layout.edges.len() {
         for u in pieces.of_track[edge].iter().filter(|u| wanted.contains(&u.segment)) {
-            places.entry(u.segment).or_insert((edge, u.s));
+            places.entry(u.segment).or_insert(SegmentPlace { edge, s: u.s });
         }
     }
-    let edges: BTreeSet<usize> = places.values().map(|p| p.0).collect();
+    let edges: BTreeSet<usize> = places.values().map(|p| p.edge).collect();
     let edges: Vec<usize> = edges.into_iter().collect();
     let (model, tolerance) = (&scan.input.model, scan.input.tolerance);
     let ways = par::map(edges.len(), |n| model.edge_chain(scan.layout.edges[edges[n]], scan.input.network, tolerance).ok().flatten());
@@ -52,7 +58,7 @@ pub(crate) fn meetings(scan: &Scan, tasks: &[Task]) -> Vec<Option<Met>> {
     let bordered = par::map(surfaces.len(), |n| with_loops(&model.surfaces[surfaces[n].index()].surface, tolerance).ok());
     let surfaces: BTreeMap<SurfaceId, Surface> = surfaces.into_iter().zip(bordered).filter_map(|(id, s)| Some((id, s?))).collect();
     // An edge meets a surface once, whatever the segments of the one and the faces of the other.
-    let pair = |task: &Task| Some((places.get(&task.segment)?.0, scan.surface_of(task.face)));
+    let pair = |task: &EdgeFace| Some((places.get(&task.segment)?.edge, scan.surface_of(task.face)));
     let pairs: BTreeSet<(usize, SurfaceId)> = tasks.iter().filter_map(pair).collect();
     let pairs: Vec<(usize, SurfaceId)> = pairs.into_iter().collect();
     let found = par::map(pairs.len(), |n| {
@@ -61,29 +67,30 @@ pub(crate) fn meetings(scan: &Scan, tasks: &[Task]) -> Vec<Option<Met>> {
     });
     let found: BTreeMap<(usize, SurfaceId), Vec<SurfaceMeeting>> =
         pairs.into_iter().zip(found).filter_map(|(pair, found)| Some((pair, found?))).collect();
-    let of = |task: &Task| {
+    let of = |task: &EdgeFace| {
         let place = places.get(&task.segment)?;
-        let way = ways.get(&place.0)?;
-        Some(on_segment(scan, *task, (*place, way), found.get(&(place.0, scan.surface_of(task.face)))?))
+        let way = ways.get(&place.edge)?;
+        Some(on_segment(scan, *task, *place, way, found.get(&(place.edge, scan.surface_of(task.face)))?))
     };
     tasks.iter().map(of).collect()
 }
 
-/// What of the meetings of an edge lies on one of its segments, off the nodes that the face has itself.
-fn on_segment(scan: &Scan, task: Task, ((edge, (first, last)), way): (Place, &Chain), found: &[SurfaceMeeting]) -> Met {
-    /// Borders that were glued may go through each other so many times as far from their ends as they are apart.
-    const GLUED: f64 = 4.0;
-    /// What touches a face at its end is within the tolerance of it for so many times the root of tolerance times length.
-    const TOUCH: f64 = 8.0;
+/// The meetings of an edge on one of its segments, off the nodes that the face has itself.
+fn on_segment(scan: &Scan, task: EdgeFace, place: SegmentPlace, way: &Chain, found: &[SurfaceMeeting]) -> Met {
+    /// Largest distance from their ends at which glued borders may cross, over the distance between them.
+    const GLUED_REACH: f64 = 4.0;
+    /// Length along which an edge that touches a face at its end is within the tolerance of it, in roots of tolerance times length.
+    const TANGENT_REACH: f64 = 8.0;
+    let SegmentPlace { edge, s: (first, last) } = place;
     let along = &scan.along[task.segment];
-    let near = GLUED * scan.layout.faces[task.face].near.max(scan.input.tolerance.point);
+    let near = GLUED_REACH * scan.layout.faces[task.face].near.max(scan.input.tolerance.point);
     let track = &scan.layout.parts[edge].track;
     let (start, length) = (track.point(0.0), way.length());
     let against = way.start().distance(start) > way.end().distance(start);
     let s = |f: f64| if against { (1.0 - f) * length } else { f * length };
     let known = [along[0], along[along.len() - 1]].map(|n| scan.has(n, task.face).then(|| scan.p(n)));
     let is_known = |p: DVec3| known.iter().flatten().any(|k| k.distance(p) <= near);
-    let slow = TOUCH * (scan.input.tolerance.point * length).sqrt();
+    let slow = TANGENT_REACH * (scan.input.tolerance.point * length).sqrt();
     let mut met = Met { known: (known, slow), ..Met::default() };
     for m in found {
         let here = s(m.f);

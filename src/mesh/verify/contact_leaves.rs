@@ -7,12 +7,12 @@ use crate::base::boxtree::BoxTree;
 use crate::base::job;
 use crate::mesh::data::mesh::Mesh;
 
-/// Elements in a box.
-const EACH: usize = 8;
-/// How far an element may be from its curved face, as a share of its longest edge: more than any that a sensible size leaves.
+/// Number of elements in a box.
+const LEAF_SIZE: usize = 8;
+/// Largest distance of a curved face from its element, as a share of the element's longest edge: more than usual sizes leave.
 pub const BULGE: f64 = 0.2;
 /// Share of the way from a node of the border to the middle of its element.
-const INWARDS: f64 = 0.25;
+const INWARD_SHARE: f64 = 0.25;
 
 /// The triangles of a face, quads as two, in boxes.
 pub struct Leaves {
@@ -41,7 +41,7 @@ impl Leaves {
         let mut triangles = mesh.triangles[range(&own.triangles)].to_vec();
         triangles.extend(mesh.quads[range(&own.quads)].iter().flat_map(halves));
         let (mut boxes, mut reach) = (Vec::new(), Vec::new());
-        for leaf in triangles.chunks(EACH) {
+        for leaf in triangles.chunks(LEAF_SIZE) {
             job::poll();
             let around = leaf.iter().flatten().fold(Box3::EMPTY, |all, n| all.with(mesh.nodes[*n as usize]));
             let longest = |t: &[u32; 3]| {
@@ -81,14 +81,14 @@ impl Leaves {
 
     /// Whether the face may come near the line between two points, as far as `bend`, beside those of its ends that it has itself.
     pub fn beside_line(&self, mesh: &Mesh, (p, q): (DVec3, DVec3), (first, last): (bool, bool), bend: f64) -> bool {
-        /// What leaves a face from a point of it is beside it no longer than so many times how near it may come.
-        const LEAVES: f64 = 2.0;
-        /// Bounds of the part of the line at an end that does not count.
-        const PART: (f64, f64) = (0.01, 0.5);
+        /// Length of the part of a line at an end on the face that does not count, over the reach of the face.
+        const EXCLUDED_LENGTH: f64 = 2.0;
+        /// Least and largest share of the line that does not count at such an end.
+        const EXCLUDED_SHARE: (f64, f64) = (0.01, 0.5);
         let mut found = false;
         self.tree.query(&Box3::of([p, q]), self.most + bend, |k| {
             let reach = self.reach[k] + bend;
-            let part = (LEAVES * reach / p.distance(q)).clamp(PART.0, PART.1);
+            let part = (EXCLUDED_LENGTH * reach / p.distance(q)).clamp(EXCLUDED_SHARE.0, EXCLUDED_SHARE.1);
             let (low, high) = (if first { part } else { 0.0 }, if last { 1.0 - part } else { 1.0 });
             found = found
                 || self.leaf(k).iter().any(|t| {
@@ -113,11 +113,11 @@ impl Leaves {
         });
         let (_, middle) = best?;
         let far = p.distance(middle);
-        (far > 0.0).then(|| p.lerp(middle, INWARDS.min(by / far)))
+        (far > 0.0).then(|| p.lerp(middle, INWARD_SHARE.min(by / far)))
     }
 
     fn leaf(&self, k: usize) -> &[[u32; 3]] {
-        &self.triangles[k * EACH..((k + 1) * EACH).min(self.triangles.len())]
+        &self.triangles[k * LEAF_SIZE..((k + 1) * LEAF_SIZE).min(self.triangles.len())]
     }
 
     /// Whether the face may hold a point: a triangle is near it.
@@ -152,7 +152,7 @@ impl Leaves {
         let mut found = None;
         self.tree.query(&Box3::of([p]), 0.0, |k| {
             if let (None, Some(t)) = (found, self.leaf(k).iter().find(|t| t.contains(&node))) {
-                found = Some(p.lerp(t.iter().map(|n| mesh.nodes[*n as usize]).sum::<DVec3>() / 3.0, INWARDS));
+                found = Some(p.lerp(t.iter().map(|n| mesh.nodes[*n as usize]).sum::<DVec3>() / 3.0, INWARD_SHARE));
             }
         });
         found
@@ -180,8 +180,8 @@ impl Leaves {
     }
 
     /// Up to so many places where triangles of two faces that share no node go through each other; the faces may be of two meshes.
-    pub fn crossings(&self, mesh: &Mesh, (other, of): (&Self, &Mesh), most: usize) -> Vec<DVec3> {
-        let is_one = std::ptr::eq(mesh, of);
+    pub fn crossings(&self, mesh: &Mesh, other: &Self, other_mesh: &Mesh, most: usize) -> Vec<DVec3> {
+        let is_one = std::ptr::eq(mesh, other_mesh);
         let mut pairs = Vec::new();
         self.tree.pairs_with(&other.tree, 0.0, |a, b| pairs.push((a, b)));
         pairs.sort_unstable();
@@ -193,7 +193,7 @@ impl Leaves {
             if own.is_empty() {
                 continue;
             }
-            other.within(of, b, &self.boxes[a], &mut others);
+            other.within(other_mesh, b, &self.boxes[a], &mut others);
             for (s, corners, around) in &own {
                 for (t, faces, box_of) in &others {
                     if !around.touches(box_of, 0.0) {

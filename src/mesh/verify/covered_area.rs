@@ -1,26 +1,28 @@
-//! The part of the parameter plane that the elements of a face cover, against the part inside the loops of its surface.
+//! The part of the parameter plane that the elements of a face cover, compared with the part inside the loops of its surface.
 //!
 //! Area and first moments of the elements in (u, v) are those of the polygon through the border nodes, which is known from the
 //! loops of the surface alone: a hole that is lost or stands elsewhere, an element that is missing or there twice changes one
 //! of them. Beside a pole, and where two places of one node are joined by an edge, part of the plane is a point or a line in space and
-//! has no element; it is found from the edges that elements leave free there. What the places of nodes on a loop may be off by is bounded by how the loop bends between the places that are known of it.
+//! has no element; it is found from the edges that elements leave free there. The error of the places of nodes on a loop is bounded by how
+//! the loop bends between the places that are known of it.
 //! With every node on the surface at its place the area in space then differs from the surface's by chords alone.
 
 use glam::DVec2;
 
 use crate::base::tolerance::{MEASURE_ACCURACY, NUDGE};
-use crate::mesh::border::layout::{Face, Layout};
-use crate::mesh::border::nodes::{Nodes, line};
+use crate::mesh::border::layout::Face;
+use crate::mesh::border::nodes::line;
+use crate::mesh::chart::face_input::FaceInput;
 use crate::mesh::data::face_geometry::FaceNodes;
 use crate::mesh::data::face_mesh::FaceMesh;
 use crate::mesh::data::mesh::Mesh;
 use crate::mesh::request::input::Input;
-use crate::surface::{Domain, Side, Surface};
+use crate::surface::{Domain, Side};
 
-/// Nodes of borders that were glued lie within this many glue distances of their places on a face.
-const GLUED: f64 = 8.0;
-/// Nodes inside a face that are compared with its surface, at most.
-const PROBES: usize = 32;
+/// Largest distance of a glued border node from its place on a face, in glue distances.
+const MAX_GLUED_DISTANCE: f64 = 8.0;
+/// Largest number of nodes inside a face that are compared with its surface.
+const MAX_PROBES: usize = 32;
 
 /// Area and first moments of a part of the parameter plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -56,17 +58,28 @@ impl CoveredArea {
     }
 }
 
-/// What the elements of a face leave out of the part inside its loops, where it is a point or a line in space: beside a pole, whose
+/// Places of nodes in the parameter plane.
+#[derive(Clone, Copy)]
+pub struct NodePlaces<'a> {
+    /// (u, v).
+    pub uv: &'a [(f64, f64)],
+    /// The node of the mesh at each.
+    pub ids: &'a [u32],
+}
+
+/// The area that the elements of a face leave out of the part inside its loops, where it is a point or a line in space: beside a pole, whose
 /// side in (u, v) is one node, and between places of one node on both sides of a seam.
 ///
-/// `ids` are the nodes at the places `uv`, the first `border` of which are those of the loops, whose edges are `around`. Each edge that
+/// The first `border` places are those of the loops, whose edges are `around`. Each edge that
 /// has elements on one side only and is not of the loops must run back elsewhere between the same nodes, or the border of a hole is left.
 /// `None` where one does not.
 pub fn left_out<'a>(
     elements: impl Iterator<Item = &'a [u32]>,
-    (uv, ids, border): (&[(f64, f64)], &[u32], usize),
+    places: NodePlaces,
+    border: usize,
     around: &[[u32; 2]],
 ) -> Option<CoveredArea> {
+    let NodePlaces { uv, ids } = places;
     let mut order: Vec<u32> = (0..border as u32).collect();
     order.sort_unstable_by_key(|n| ids[*n as usize]);
     let mut twice = vec![false; border];
@@ -105,10 +118,19 @@ pub fn left_out<'a>(
 }
 
 /// A place on a loop, and how far from there the node may lie.
-pub type Place = (DVec2, f64);
+pub type LoopPlace = (DVec2, f64);
 
-/// What a face must cover: the polygons through the places of its border nodes, loop by loop.
-pub fn inside(loops: &[Vec<Place>]) -> (CoveredArea, CoveredArea) {
+/// The area that elements must cover, and by how much it may differ.
+#[derive(Clone, Copy, Debug)]
+pub struct WantedArea {
+    /// Of the polygons through the places of the border nodes.
+    pub polygons: CoveredArea,
+    /// Largest difference, by the bounds of the places.
+    pub slack: CoveredArea,
+}
+
+/// The area that a face must cover: inside the polygons through the places of its border nodes, loop by loop.
+pub fn inside(loops: &[Vec<LoopPlace>]) -> WantedArea {
     let (mut wanted, mut slack) = (CoveredArea::default(), CoveredArea::default());
     let first = loops.iter().flatten().next().map_or(DVec2::ZERO, |p| p.0);
     let reach = loops.iter().flatten().map(|p| (p.0 - first).abs()).fold(DVec2::ZERO, DVec2::max);
@@ -125,37 +147,39 @@ pub fn inside(loops: &[Vec<Place>]) -> (CoveredArea, CoveredArea) {
     let more = MEASURE_ACCURACY * (reach.x * reach.y).abs();
     slack.area += more;
     slack.moment += (first.abs() + 2.0 * reach) * more;
-    (wanted, slack)
+    WantedArea { polygons: wanted, slack }
 }
 
-/// Whether what elements cover is what they must, as far as that is known.
-pub fn agrees(covered: CoveredArea, (wanted, slack): (CoveredArea, CoveredArea)) -> bool {
-    let off = (covered.moment - wanted.moment).abs();
-    (covered.area - wanted.area).abs() <= slack.area && off.x <= slack.moment.x && off.y <= slack.moment.y
+/// Whether the covered area is the wanted one within its slack.
+pub fn agrees(covered: CoveredArea, wanted: WantedArea) -> bool {
+    let WantedArea { polygons, slack } = wanted;
+    let off = (covered.moment - polygons.moment).abs();
+    (covered.area - polygons.area).abs() <= slack.area && off.x <= slack.moment.x && off.y <= slack.moment.y
 }
 
-/// Whether what the elements of a face cover is what the loops of its surface bound; else both areas. Places of border nodes are
-/// estimated, and looked for on the surface only where the estimate does not agree.
-pub(crate) fn compare(input: &Input, of: (&Layout, &Nodes), face: &Face, covered: CoveredArea) -> std::result::Result<(), (f64, f64)> {
-    if agrees(covered, inside(&loops(input, of, face, false))) {
+/// Compares the area that the elements of a face cover with the one that the loops of its surface bound; fails with both. Places of border nodes
+/// are estimated first, and computed on the surface only where the estimate does not agree.
+pub(crate) fn compare(face_input: &FaceInput, face: &Face, covered: CoveredArea) -> std::result::Result<(), (f64, f64)> {
+    if agrees(covered, inside(&loops(face_input, face, false))) {
         return Ok(());
     }
-    let wanted = inside(&loops(input, of, face, true));
-    if agrees(covered, wanted) { Ok(()) } else { Err((covered.area, wanted.0.area)) }
+    let wanted = inside(&loops(face_input, face, true));
+    if agrees(covered, wanted) { Ok(()) } else { Err((covered.area, wanted.polygons.area)) }
 }
 
-/// Places of the border nodes of a face by the loops of its surface, loop by loop; estimated, or looked for.
-fn loops(input: &Input, (layout, nodes): (&Layout, &Nodes), face: &Face, is_exact: bool) -> Vec<Vec<Place>> {
+/// Places of the border nodes of a face by the loops of its surface, loop by loop; computed where `is_exact`, else estimated.
+fn loops(face_input: &FaceInput, face: &Face, is_exact: bool) -> Vec<Vec<LoopPlace>> {
+    let input = face_input.input;
     let record = &input.model.patches[face.patch.index()];
     let surface = &input.model.surfaces[face.surface.index()].surface;
-    let corners = |all: &[(f64, f64)]| vec![all.iter().map(|p| (DVec2::from(*p), 0.0)).collect::<Vec<Place>>()];
+    let corners = |all: &[(f64, f64)]| vec![all.iter().map(|p| (DVec2::from(*p), 0.0)).collect::<Vec<LoopPlace>>()];
     let ((u0, u1), (v0, v1)) = (record.u, record.v);
     let mut found = match surface.domain() {
         Domain::Triangle => corners(&[(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)]),
         Domain::Loop => {
             let (mut loops, mut first) = (Vec::new(), 0);
             for sides in surface.loops() {
-                let around = (first..first + sides).flat_map(|k| side(surface, k, (layout, nodes), face, is_exact));
+                let around = (first..first + sides).flat_map(|k| side(face_input, face, k, is_exact));
                 loops.push(around.collect());
                 first += sides;
             }
@@ -164,20 +188,22 @@ fn loops(input: &Input, (layout, nodes): (&Layout, &Nodes), face: &Face, is_exac
         _ => corners(&[(u0, v0), (u1, v0), (u1, v1), (u0, v1)]),
     };
     // What lies beside its place in space does so in (u, v), and where borders were glued places of one node become one.
-    let around = |polygon: &Vec<Place>| (0..polygon.len()).map(|k| polygon[k].0.distance(polygon[(k + 1) % polygon.len()].0)).sum::<f64>();
+    let around =
+        |polygon: &Vec<LoopPlace>| (0..polygon.len()).map(|k| polygon[k].0.distance(polygon[(k + 1) % polygon.len()].0)).sum::<f64>();
     let length: f64 = face.sides.iter().map(|side| side.length).sum();
     let scale = found.iter().map(around).sum::<f64>() / length;
-    let near = GLUED * face.near.max(input.tolerance.point) * if scale.is_finite() { scale } else { 0.0 };
+    let near = MAX_GLUED_DISTANCE * face.near.max(input.tolerance.point) * if scale.is_finite() { scale } else { 0.0 };
     found.iter_mut().flatten().for_each(|place| place.1 += near);
     found
 }
 
 /// Places of the nodes along one side of a face with loops.
-fn side(surface: &Surface, k: usize, (layout, nodes): (&Layout, &Nodes), face: &Face, is_exact: bool) -> Vec<Place> {
+fn side(face_input: &FaceInput, face: &Face, k: usize, is_exact: bool) -> Vec<LoopPlace> {
+    let surface = &face_input.input.model.surfaces[face.surface.index()].surface;
     if face.sides[k].uses.is_empty() {
         return surface.border_line(k).map(|(a, b)| vec![(a.into(), 0.0), (b.into(), 0.0)]).unwrap_or_default();
     }
-    let line = line(layout, nodes, face, k, 1);
+    let line = line(face_input.layout, face_input.nodes, face, k, 1);
     let shares = line.lengths.iter().map(|s| s / face.sides[k].length);
     match surface.side(k) {
         Side::Chain { from, to, .. } if is_exact => {
@@ -189,18 +215,18 @@ fn side(surface: &Surface, k: usize, (layout, nodes): (&Layout, &Nodes), face: &
 }
 
 /// The first node that is not on the surface at its place: all of those on the border, and some inside.
-pub(crate) fn misplaced(input: &Input, (face, ready): (&Face, &FaceMesh), mesh: &Mesh) -> Option<(u32, f64)> {
-    let surface = &ready.geometry.surface;
-    let near = GLUED * face.near.max(input.tolerance.point);
-    // Under limits it was made ready for the bounds.
-    let is_ready = face.free && (input.plan.settings.chord_error.is_some() || input.plan.settings.angle_error.is_some());
-    let quick = if is_ready { surface.power_form() } else { None };
+pub(crate) fn misplaced(input: &Input, face: &Face, face_mesh: &FaceMesh, mesh: &Mesh) -> Option<(u32, f64)> {
+    let surface = &face_mesh.geometry.surface;
+    let near = MAX_GLUED_DISTANCE * face.near.max(input.tolerance.point);
+    // Under limits the power form was computed for the bounds.
+    let has_power_form = face.free && (input.plan.settings.chord_error.is_some() || input.plan.settings.angle_error.is_some());
+    let quick = if has_power_form { surface.power_form() } else { None };
     let off = |(n, (u, v)): (u32, (f64, f64))| {
         let off = surface.point_by(quick.as_ref(), u, v).distance(mesh.nodes[n as usize]);
         (off > near || off.is_nan()).then_some((n, off))
     };
-    let inner = |all: usize| (0..all).step_by(all.div_ceil(PROBES).max(1));
-    match &ready.geometry.nodes {
+    let inner = |all: usize| (0..all).step_by(all.div_ceil(MAX_PROBES).max(1));
+    match &face_mesh.geometry.nodes {
         FaceNodes::Grid(grid, frame) => {
             let (nu, nv) = grid.size();
             let rows = (0..=nu).flat_map(|i| [(i, 0), (i, nv)]).chain((0..=nv).flat_map(|j| [(0, j), (nu, j)]));

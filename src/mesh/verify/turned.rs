@@ -1,4 +1,4 @@
-//! E715: elements that are turned over against their neighbours or have no area.
+//! E715: elements whose normal is opposite to the surface's, or that have no area.
 
 use glam::DVec3;
 
@@ -13,8 +13,8 @@ use crate::mesh::request::input::Input;
 use crate::mesh::request::recall::RecallFace;
 use crate::surface::Surface;
 
-/// Cells of a face that are compared with the surface's normal, along each direction.
-const PROBES: usize = 16;
+/// Largest number of cells along each direction of a face that are compared with the surface's normal.
+const MAX_PROBES: usize = 16;
 
 /// Turned cells of a face: how many, and (u, v) of the first.
 pub type Turned = (u64, (f64, f64));
@@ -30,7 +30,7 @@ pub fn refuse_turned(input: &Input, prepared: &[FaceMesh], mesh: &Mesh, recall: 
 
 /// Fails when a face that is made freely has concave quads, with their number and the first place.
 pub fn refuse_concave(input: &Input, prepared: &[FaceMesh], mesh: &Mesh) -> Result<()> {
-    let found = prepared.iter().map(|ready| match &ready.geometry.nodes {
+    let found = prepared.iter().map(|face_mesh| match &face_mesh.geometry.nodes {
         FaceNodes::Free(free, places) => concave_quads(free, places, mesh),
         _ => None,
     });
@@ -38,11 +38,11 @@ pub fn refuse_concave(input: &Input, prepared: &[FaceMesh], mesh: &Mesh) -> Resu
 }
 
 fn first_fault(input: &Input, prepared: &[FaceMesh], found: Vec<Option<Turned>>) -> Result<()> {
-    for (ready, bad) in prepared.iter().zip(found) {
+    for (face_mesh, bad) in prepared.iter().zip(found) {
         if let Some((count, uv)) = bad {
-            let surface = &input.model.surfaces[ready.surface.index()].surface;
+            let surface = &input.model.surfaces[face_mesh.surface.index()].surface;
             let at = surface.point(uv.0, uv.1);
-            let free = matches!(ready.geometry.nodes, FaceNodes::Free(..));
+            let free = matches!(face_mesh.geometry.nodes, FaceNodes::Free(..));
             return Err(MeshFault::Inverted { surface: surface.origin(), count, uv, at, free }.into());
         }
     }
@@ -60,12 +60,12 @@ fn concave_quads(free: &Free, places: &[u32], mesh: &Mesh) -> Option<Turned> {
 }
 
 /// Cells on a coarse selection of rows and columns whose normal stands against the surface's.
-fn turned(surface: &Surface, ready: &FaceMesh, mesh: &Mesh) -> Option<Turned> {
-    let FaceNodes::Grid(grid, frame) = &ready.geometry.nodes else {
+fn turned(surface: &Surface, face_mesh: &FaceMesh, mesh: &Mesh) -> Option<Turned> {
+    let FaceNodes::Grid(grid, frame) = &face_mesh.geometry.nodes else {
         return None;
     };
     let (nu, nv) = frame.size();
-    let pick = |n: usize| (0..n.min(PROBES)).map(move |k| k * n / n.min(PROBES));
+    let pick = |n: usize| (0..n.min(MAX_PROBES)).map(move |k| k * n / n.min(MAX_PROBES));
     let node = |i: usize, j: usize| mesh.nodes[frame.node(i, j) as usize];
     let (mut count, mut first) = (0, None);
     for j in pick(nv) {
@@ -74,7 +74,7 @@ fn turned(surface: &Surface, ready: &FaceMesh, mesh: &Mesh) -> Option<Turned> {
             let (a, b) = (grid.uv(i, j), grid.uv(i + 1, j + 1));
             let middle = (0.5 * (a.0 + b.0), 0.5 * (a.1 + b.1));
             let wanted = surface.normal(middle.0, middle.1);
-            // Where the surface itself has no normal nothing can be said.
+            // Where the surface itself has no normal there is nothing to compare with.
             if wanted != DVec3::ZERO && normal.dot(wanted) <= 0.0 {
                 count += 1;
                 first = first.or(Some(middle));

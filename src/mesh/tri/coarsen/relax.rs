@@ -9,19 +9,10 @@ use crate::base::fault::Result;
 use crate::base::job::Job;
 use crate::base::triangulate_points::NO_TRIANGLE;
 use crate::base::work;
-use crate::mesh::tri::coarsen::{GAIN, Known, Thinning, WATCH};
+use crate::mesh::tri::coarsen::{Coarsening, RemovalCost};
+use crate::mesh::tri::optimize_settings::COARSEN;
 
-/// How far a node is moved, over the way to the mean of its triangles by the squares of their bounds.
-const STEPS: [f64; 2] = [1.5, 0.75];
-/// Bounds over the limit from which moves of the nodes round a joined pair may start.
-const MAX_START_LOAD: f64 = 1.25;
-/// Rounds of moves, and the share of the worst bound that a round may leave at most for another one to follow.
-const MAX_SWEEPS: usize = 4;
-const WORTH_ANOTHER: f64 = 0.985;
-/// Work of a pass of it, in evaluations of the surface for each triangle.
-const RELAXED_WORK: u64 = 3000;
-
-impl Thinning<'_> {
+impl Coarsening<'_> {
     /// Moves nodes so that their triangles have more even bounds.
     pub(crate) fn relax(&mut self, job: &Job) -> Result<()> {
         let last = self.changes.moved.replace(self.changes.now);
@@ -31,7 +22,7 @@ impl Thinning<'_> {
                 let changed: Vec<u32> = self.ring.node.iter().copied().chain([node]).collect();
                 self.requeue(&changed);
             }
-            if (node as usize).is_multiple_of(WATCH) {
+            if (node as usize).is_multiple_of(COARSEN.nodes_per_check) {
                 job.go_on()?;
             }
         }
@@ -47,32 +38,32 @@ impl Thinning<'_> {
         }
         let (mut mean, mut weights, mut before) = (DVec2::ZERO, 0.0, 0.0);
         for t in &around {
-            let load = self.load(*t);
-            mean +=
-                self.triangulation.tri[*t as usize].iter().map(|n| self.triangulation.xy[*n as usize]).sum::<DVec2>() * (load * load / 3.0);
-            weights += load * load;
-            before += load * load * load * load;
+            let ratio = self.ratio(*t);
+            mean += self.triangulation.tri[*t as usize].iter().map(|n| self.triangulation.xy[*n as usize]).sum::<DVec2>()
+                * (ratio * ratio / 3.0);
+            weights += ratio * ratio;
+            before += ratio * ratio * ratio * ratio;
         }
         if !(before > 0.0 && before.is_finite()) {
             return false;
         }
         let old = (self.triangulation.xy[k], self.triangulation.p[k]);
-        for share in STEPS {
+        for share in COARSEN.move_shares {
             let xy = old.0.lerp(mean / weights, share);
-            (self.triangulation.xy[k], self.triangulation.p[k]) = (xy, (self.ask.point)(xy));
-            let (mut loads, mut sum) = (Vec::with_capacity(around.len()), 0.0);
+            (self.triangulation.xy[k], self.triangulation.p[k]) = (xy, (self.conditions.point)(xy));
+            let (mut ratios, mut sum) = (Vec::with_capacity(around.len()), 0.0);
             for t in &around {
                 let c = self.triangulation.tri[*t as usize];
-                let far = c.iter().all(|n| *n == node || (self.ask.allowed)(self.triangulation, node, *n));
-                let Some(load) = self.less(c, limit).filter(|_| far) else { break };
-                sum += load * load * load * load;
-                if sum > GAIN * before {
+                let far = c.iter().all(|n| *n == node || (self.conditions.allowed)(self.triangulation, node, *n));
+                let Some(ratio) = self.less(c, limit).filter(|_| far) else { break };
+                sum += ratio * ratio * ratio * ratio;
+                if sum > COARSEN.max_gain_ratio * before {
                     break;
                 }
-                loads.push((*t, c, load));
+                ratios.push((*t, c, ratio));
             }
-            if loads.len() == around.len() {
-                loads.into_iter().for_each(|(t, c, load)| self.loads[t as usize] = (c, load));
+            if ratios.len() == around.len() {
+                ratios.into_iter().for_each(|(t, c, ratio)| self.ratios[t as usize] = (c, ratio));
                 return true;
             }
         }
@@ -84,17 +75,17 @@ impl Thinning<'_> {
     fn requeue(&mut self, changed: &[u32]) {
         self.changes.mark(changed);
         for n in changed.iter().copied().filter(|n| *n >= self.triangulation.fixed && self.triangulation.at[*n as usize] != NO_TRIANGLE) {
-            self.known[n as usize] = Known::Nothing;
+            self.removal[n as usize] = RemovalCost::Unknown;
             self.heap.push(Reverse((0, n)));
         }
     }
 
-    /// Makes one node of two neighbours where moves of the nodes round them bring the bounds below the limit again, within the work that this is
-    /// worth; how many went.
+    /// Makes one node of two neighbours where moves of the nodes round them bring the bounds below the limit again, within a work budget;
+    /// how many pairs.
     pub(crate) fn join_relaxed(&mut self, job: &Job) -> Result<usize> {
-        let mut gone = 0_usize;
+        let mut joined = 0_usize;
         let last = self.changes.joined_relaxed.replace(self.changes.now);
-        let (most, mut spent) = (RELAXED_WORK * self.triangulation.tri.len() as u64, 0);
+        let (most, mut spent) = (COARSEN.relaxed_work * self.triangulation.tri.len() as u64, 0);
         for t in 0..self.triangulation.tri.len() as u32 {
             for k in 0..3 {
                 let c = self.triangulation.tri[t as usize];
@@ -103,25 +94,25 @@ impl Thinning<'_> {
                 if !is_open {
                     continue;
                 }
-                let (joined, units) = work::measured(|| self.join_one_relaxed(a, b));
+                let (is_joined, units) = work::measured(|| self.join_one_relaxed(a, b));
                 spent += units;
-                if joined {
-                    gone += 1;
+                if is_joined {
+                    joined += 1;
                     break;
                 }
             }
             if spent > most {
                 break;
             }
-            if (t as usize).is_multiple_of(WATCH) {
+            if (t as usize).is_multiple_of(COARSEN.nodes_per_check) {
                 job.go_on()?;
             }
         }
-        Ok(gone)
+        Ok(joined)
     }
 
     fn join_one_relaxed(&mut self, a: u32, b: u32) -> bool {
-        let Some(star) = self.star_of_both(a, b, MAX_START_LOAD) else { return false };
+        let Some(star) = self.star_of_both(a, b, COARSEN.max_start_ratio) else { return false };
         let patch = std::mem::take(&mut self.patch);
         let mut all = patch.tri.clone();
         for n in &patch.rim {
@@ -136,12 +127,12 @@ impl Thinning<'_> {
         self.invalidate(&all);
         let free: Vec<u32> = std::iter::once(a).chain(patch.rim.iter().copied().filter(|n| *n >= self.triangulation.fixed)).collect();
         let mut worst = self.worst(&all);
-        for _ in 0..MAX_SWEEPS {
+        for _ in 0..COARSEN.max_sweeps {
             for n in &free {
-                self.relax_node(*n, MAX_START_LOAD);
+                self.relax_node(*n, COARSEN.max_start_ratio);
             }
             let now = self.worst(&all);
-            if now < 1.0 || now > WORTH_ANOTHER * worst {
+            if now < 1.0 || now > COARSEN.max_sweep_gain_ratio * worst {
                 worst = now;
                 break;
             }
@@ -164,17 +155,17 @@ impl Thinning<'_> {
         let mut worst = 0.0_f64;
         for t in some.iter().copied() {
             if self.triangulation.alive(t) {
-                worst = worst.max(self.load(t));
+                worst = worst.max(self.ratio(t));
             }
         }
         worst
     }
 
-    /// Bounds of triangles whose nodes have moved are computed anew when asked for.
+    /// Bounds of triangles whose nodes have moved are computed anew when needed.
     fn invalidate(&mut self, some: &[u32]) {
         for t in some {
-            if let Some(load) = self.loads.get_mut(*t as usize) {
-                load.0 = [0; 3];
+            if let Some(ratio) = self.ratios.get_mut(*t as usize) {
+                ratio.0 = [0; 3];
             }
         }
     }

@@ -1,30 +1,12 @@
-//! The first row of a lattice of squares: round the border, a node over each of its nodes, so that the cells beside it stand
-//! upright on it.
+//! The first row of a lattice of squares: round the border, a node over each of its nodes, so that the cells beside it are
+//! perpendicular to it.
 
 use glam::{DVec2, DVec3};
 
 use crate::base::math;
-use crate::mesh::tri::front::{FAR, Front, STRAIGHT};
+use crate::mesh::tri::front::{Front, FrontStep, STRAIGHT};
+use crate::mesh::tri::placement_settings::{FRONT, SQUARE_ROWS};
 
-/// Nearest distance between two nodes of lattices, as a share of the wanted length: one in the middle of a square would have
-/// 0.707 to its corners.
-const APART: f64 = 0.75;
-/// The same to nodes of the first row: half a step, so that what is left between two rows is as often too narrow as too wide.
-const HALF: f64 = 0.55;
-/// The same between nodes of the first row.
-const BESIDE: f64 = 0.65;
-/// Angle at the border, over a straight one, from which it counts as bent outwards.
-const BENT: f64 = 1.02;
-/// Nearest distance of a node to an edge of the border, as a share of the wanted length.
-const CLEAR: f64 = 0.6;
-/// Steps of the lattice over the wanted length where it follows those of the border.
-const FOLLOWED: std::ops::Range<f64> = 0.7..1.08;
-/// Angles that a cell may have at the border where it bends outwards, radians: 57° to 126°.
-const CORNER: std::ops::Range<f64> = 1.0..2.2;
-/// Edges of a straight run that a lattice follows.
-const RUN: usize = 3;
-/// Cosine between runs that stand upright on each other.
-const UPRIGHT: f64 = 0.02;
 /// A right angle, radians.
 const RIGHT: f64 = std::f64::consts::FRAC_PI_2;
 
@@ -45,8 +27,8 @@ impl Front<'_> {
         let outline = self.input.outline;
         let runs = self.runs();
         let longest = runs.iter().copied().reduce(|a, b| if b.length > a.length { b } else { a })?;
-        let upright = |r: &&Run| r.along.dot(longest.along).abs() < UPRIGHT;
-        let across = runs.iter().filter(upright).copied().reduce(|a, b| if b.length > a.length { b } else { a });
+        let perpendicular = |r: &&Run| r.along.dot(longest.along).abs() < SQUARE_ROWS.max_perpendicular_cosine;
+        let across = runs.iter().filter(perpendicular).copied().reduce(|a, b| if b.length > a.length { b } else { a });
         self.steps = [self.followed(Some(longest)), self.followed(across)];
         let mut before = vec![u32::MAX; outline.p.len()];
         outline.loops.iter().for_each(|e| before[e[1] as usize] = e[0]);
@@ -54,7 +36,7 @@ impl Front<'_> {
         for &[a, b] in &outline.loops {
             let Some(from) = outline.p.get(before[a as usize] as usize).copied() else { continue };
             let here = self.grown.p.len() as u32;
-            self.over(a, outline.p[b as usize], from, longest.along);
+            self.place_over(a, outline.p[b as usize], from, longest.along);
             if a == longest.node && self.grown.p.len() as u32 > here {
                 first = Some(here);
             }
@@ -68,9 +50,12 @@ impl Front<'_> {
     pub(crate) fn near_square(&self, p: DVec3, size: f64) -> bool {
         // The middle of a cell is as far from its corners as its steps are long.
         let steps = DVec2::from(self.steps).length() * std::f64::consts::FRAC_1_SQRT_2;
-        let (near, far) = (HALF * HALF * size * size, APART * steps * size);
+        let (near, far) = (
+            SQUARE_ROWS.min_first_row_spacing * SQUARE_ROWS.min_first_row_spacing * size * size,
+            SQUARE_ROWS.min_lattice_spacing * steps * size,
+        );
         let mut beside = 0;
-        let over = |tag: u32, at: DVec3| (p - at).dot(self.arms[tag as usize]) < HALF * size;
+        let over = |tag: u32, at: DVec3| (p - at).dot(self.arms[tag as usize]) < SQUARE_ROWS.min_first_row_spacing * size;
         let row = |tag: u32| tag < self.row;
         self.nodes.any(p, far, size, |node, square| {
             beside += 1;
@@ -103,17 +88,17 @@ impl Front<'_> {
         runs
     }
 
-    /// The steps of a run over the wanted length, where the lattice can take them over.
+    /// The steps of a run over the wanted length, where the lattice can follow them; else 1.
     fn followed(&self, run: Option<Run>) -> f64 {
-        let Some(run) = run.filter(|run| run.edges >= RUN) else { return 1.0 };
+        let Some(run) = run.filter(|run| run.edges >= SQUARE_ROWS.min_run_edges) else { return 1.0 };
         let outline = self.input.outline;
         let size = self.input.field.size(outline.xy[run.node as usize], outline.p[run.node as usize]);
         let share = run.length / run.edges as f64 / size;
-        if FOLLOWED.contains(&share) { share } else { 1.0 }
+        if SQUARE_ROWS.followed_steps.contains(&share) { share } else { 1.0 }
     }
 
     /// Nodes over a node of the border between its next and its last one: as many cells as fill the angle best.
-    fn over(&mut self, node: u32, next: DVec3, last: DVec3, along: DVec3) {
+    fn place_over(&mut self, node: u32, next: DVec3, last: DVec3, along: DVec3) {
         let outline = self.input.outline;
         let (p, xy) = (outline.p[node as usize], outline.xy[node as usize]);
         let spot = self.input.chart_surface.spot(xy);
@@ -126,36 +111,36 @@ impl Front<'_> {
         let cells = frame.map_or((turn / RIGHT).round().clamp(1.0, 4.0) as usize, |f| f.cells(turn, unit, -back.normalize_or_zero()));
         let size = self.input.field.size(xy, p);
         let aside = normal.cross(unit);
-        let bent = turn > BENT * 2.0 * RIGHT && cells == 2;
+        let bent = turn > SQUARE_ROWS.min_outward_turn * 2.0 * RIGHT && cells == 2;
         let way = |k: usize| {
             let (sin, cos) = math::sin_cos(turn * k as f64 / cells as f64);
             let way = unit * cos + aside * sin;
             // Between corners the row turns half as fast as the border.
             frame.filter(|_| bent).map_or(way, |frame| (way + frame.nearest(way)).normalize_or_zero())
         };
-        let segment = |way: DVec3| {
+        let ratio = |way: DVec3| {
             let lengthwise = way.dot(along).abs();
-            if lengthwise > 1.0 - UPRIGHT {
+            if lengthwise > 1.0 - SQUARE_ROWS.max_perpendicular_cosine {
                 self.steps[0]
-            } else if lengthwise < UPRIGHT {
+            } else if lengthwise < SQUARE_ROWS.max_perpendicular_cosine {
                 self.steps[1]
             } else {
                 1.0
             }
         };
-        let arms: Vec<DVec3> = (1..cells).map(|k| way(k) * (size * segment(way(k)))).collect();
+        let arms: Vec<DVec3> = (1..cells).map(|k| way(k) * (size * ratio(way(k)))).collect();
         let between: Vec<DVec3> = arms.windows(2).map(|w| w[0] + w[1]).collect();
         for arm in arms.iter().chain(&between) {
             let Some(step) = spot.step(*arm) else { continue };
             let to = self.input.chart_surface.clamp(xy + step);
             let new = self.input.chart_surface.spot(to);
-            let near = self.near_edges((xy, to), (new.p, size), CLEAR, Some(node));
-            let taken = self.nodes.any(new.p, BESIDE * size, size, |_, _| true);
+            let near = self.near_edges(FrontStep { from: xy, to, p: new.p, size }, SQUARE_ROWS.min_border_distance, Some(node));
+            let occupied = self.nodes.any(new.p, SQUARE_ROWS.min_spacing_within_row * size, size, |_, _| true);
             let ahead = along.reject_from_normalized(new.normal()).normalize_or_zero();
-            let far = new.p.distance(spot.p) > FAR * arm.length() || self.is_on_edge(to);
-            if !near && !taken && !far {
+            let far = new.p.distance(spot.p) > FRONT.max_step_ratio * arm.length() || self.is_on_edge(to);
+            if !near && !occupied && !far {
                 let ahead = if ahead == DVec3::ZERO { arm.reject_from_normalized(new.normal()).normalize_or_zero() } else { ahead };
-                self.take(to, new.p, size, ahead);
+                self.add(to, new.p, size, ahead);
                 self.arms.push(arm.normalize_or_zero());
             }
         }
@@ -196,7 +181,8 @@ impl Frame {
     fn cells(&self, turn: f64, leaves: DVec3, comes: DVec3) -> usize {
         let turned = (self.quarter(comes) - self.quarter(leaves)).rem_euclid(4.0);
         let squared = 2.0 + if turned > 2.0 { turned - 4.0 } else { turned };
-        let bent = turn > BENT * 2.0 * RIGHT && squared >= 2.0 && CORNER.contains(&(turn / squared));
+        let bent =
+            turn > SQUARE_ROWS.min_outward_turn * 2.0 * RIGHT && squared >= 2.0 && SQUARE_ROWS.corner_angles.contains(&(turn / squared));
         (if bent { squared } else { (turn / RIGHT).round().clamp(1.0, 4.0) }) as usize
     }
 }

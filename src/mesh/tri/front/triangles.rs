@@ -4,11 +4,8 @@ use glam::{DVec2, DVec3};
 
 use crate::base::math;
 use crate::mesh::chart::outline::cross;
-use crate::mesh::tri::front::{CLEAR, FAR, Front, SIGHT, STRAIGHT, apart};
-
-/// Corners of angles between these, radians, are filled by two triangles: above 75° and below 150°.
-const NARROW: f64 = 1.309;
-const WIDE: f64 = 2.618;
+use crate::mesh::tri::front::{Front, FrontStep, STRAIGHT, apart};
+use crate::mesh::tri::placement_settings::{FRONT, TWO_TRIANGLE_CORNERS};
 
 impl Front<'_> {
     /// A row of nodes along the border, each the tip of an equilateral triangle over an edge; they do not grow further but
@@ -34,14 +31,14 @@ impl Front<'_> {
             let to = self.input.chart_surface.clamp(middle + step);
             let new = self.input.chart_surface.spot(to);
             let size = self.input.field.size(to, new.p);
-            if new.p.distance(spot.p) > FAR * tall || self.is_on_edge(to) {
+            if new.p.distance(spot.p) > FRONT.max_step_ratio * tall || self.is_on_edge(to) {
                 continue;
             }
             if self.near_node(new.p, size) || self.near_others(to, new.p, size, [a, b]) {
                 continue;
             }
             let along = along.reject_from_normalized(new.normal()).normalize_or_zero();
-            self.take(to, new.p, size, along);
+            self.add(to, new.p, size, along);
             self.open.clear();
             if run.0 > best && along != DVec3::ZERO {
                 (best, first) = (run.0, Some(self.grown.p.len() as u32 - 1));
@@ -62,7 +59,7 @@ impl Front<'_> {
             let normal = spot.normal();
             let (out, back) = ((pb - pa).reject_from_normalized(normal), (*from - pa).reject_from_normalized(normal));
             let turn = math::atan2(normal.dot(out.cross(back)), out.dot(back));
-            if !(NARROW..WIDE).contains(&turn) {
+            if !TWO_TRIANGLE_CORNERS.contains(&turn) {
                 continue;
             }
             let way = (out.normalize_or_zero() + back.normalize_or_zero()).normalize_or_zero();
@@ -70,11 +67,11 @@ impl Front<'_> {
             let Some(step) = spot.step(way * size) else { continue };
             let to = self.input.chart_surface.clamp(xy + step);
             let new = self.input.chart_surface.spot(to);
-            let near = self.near_edges((xy, to), (new.p, size), CLEAR, Some(a));
+            let near = self.near_edges(FrontStep { from: xy, to, p: new.p, size }, FRONT.min_border_distance, Some(a));
             let along = way.reject_from_normalized(new.normal()).normalize_or_zero();
-            let far = new.p.distance(pa) > FAR * size || self.is_on_edge(to);
+            let far = new.p.distance(pa) > FRONT.max_step_ratio * size || self.is_on_edge(to);
             if !near && !far && along != DVec3::ZERO && !self.near_node(new.p, size) {
-                self.take(to, new.p, size, along);
+                self.add(to, new.p, size, along);
                 self.open.clear();
             }
         }
@@ -84,13 +81,13 @@ impl Front<'_> {
     fn near_others(&self, xy: DVec2, p: DVec3, size: f64, own: [u32; 2]) -> bool {
         let outline = self.input.outline;
         let middle = 0.5 * (outline.xy[own[0] as usize] + outline.xy[own[1] as usize]);
-        self.border.any(p, SIGHT * size, size, |sample, _| {
+        self.border.any(p, FRONT.border_search_radius * size, size, |sample, _| {
             let edge = self.edges[sample.tag as usize];
             if edge == own {
                 return false;
             }
             let [a, b] = edge.map(|n| n as usize);
-            cross(middle, xy, outline.xy[a], outline.xy[b]) || apart(p, outline.p[a], outline.p[b]) < CLEAR * size
+            cross(middle, xy, outline.xy[a], outline.xy[b]) || apart(p, outline.p[a], outline.p[b]) < FRONT.min_border_distance * size
         })
     }
 }

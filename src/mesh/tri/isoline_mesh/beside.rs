@@ -1,4 +1,4 @@
-//! What cells leave: one constrained triangulation between them and the borders, and the cells to cut where it breaks a limit.
+//! The space between cells and borders: one constrained triangulation, and the cells to cut where it exceeds a limit.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -8,26 +8,18 @@ use crate::base::job;
 use crate::base::triangulate_points::{Triangles, points};
 use crate::mesh::chart::outline::inside;
 use crate::mesh::deviation::poles::from_pole;
-use crate::mesh::tri::isoline_mesh::cut::Cut;
-use crate::mesh::tri::isoline_mesh::{Failure, Tried, Work};
+use crate::mesh::tri::isoline::Cut;
+use crate::mesh::tri::isoline_mesh::{Failure, IsolineMesher, IsolineResult};
 use crate::mesh::tri::limit_table;
+use crate::mesh::tri::placement_settings::ISOLINES;
 use crate::mesh::tri::tree::Class;
 use crate::mesh::tri::triangulation::Triangulation;
 use crate::mesh::tri::trouble::Trouble;
 
-/// Longest side of a triangle beside a border over the longest side of a cell: its diagonal, and a little.
-const STRETCH: f64 = 1.5;
-
-/// Share of the chord error up to which cells are cut beside what nothing bounds.
-const FINE: f64 = 0.25;
-
-/// Share of the longest side of a triangle without area by which the surface may be off it.
-const ROUND: f64 = 0.25;
-
-impl Work<'_> {
+impl IsolineMesher<'_> {
     /// The triangulation of all nodes with the edges of borders and of the triangles that are sure, and which are inside.
-    pub(crate) fn triangulated(&self, triangulation: &Triangulation, sure: &[[u32; 3]]) -> Tried<(Triangles, Vec<bool>)> {
-        let outline = self.ask.outline;
+    pub(crate) fn triangulated(&self, triangulation: &Triangulation, sure: &[[u32; 3]]) -> IsolineResult<(Triangles, Vec<bool>)> {
+        let outline = self.input.outline;
         let mut edges: Vec<[u32; 2]> =
             sure.iter().flat_map(|[a, b, c]| [[*a, *b], [*b, *c], [*c, *a]]).map(|[a, b]| [a.min(b), a.max(b)]).collect();
         edges.sort_unstable();
@@ -41,11 +33,12 @@ impl Work<'_> {
         if kept.contains(&true) { Ok((all, kept)) } else { Err(Failure::Trouble(Trouble::Empty)) }
     }
 
-    /// Cells to cut for triangles beside borders that do not keep the limits.
+    /// Cells to cut for triangles beside borders that exceed the limits.
     pub(crate) fn beside(
         &mut self,
         triangulation: &Triangulation,
-        (all, kept): (&Triangles, &[bool]),
+        all: &Triangles,
+        kept: &[bool],
         sure: &BTreeSet<[u32; 3]>,
     ) -> Vec<(u32, Cut)> {
         self.worst = None;
@@ -53,57 +46,57 @@ impl Work<'_> {
         for t in (0..kept.len()).filter(|t| kept[*t]) {
             job::poll();
             let c = all.corners[t];
-            // At a pole the chart has edges that are points in space, and lines of the surface run into it: what stands on an edge,
-            // or has its corners on a line, is no triangle in the end.
+            // At a pole the chart has edges that are points in space, and lines of the surface run into it: a triangle on such an edge,
+            // or with its corners on such a line, is dropped.
             let flat = self.is_flat(triangulation, c);
             let wraps = flat && self.wraps(triangulation, c);
             if sure.contains(&sorted(c)) || flat && !wraps {
                 continue;
             }
-            let load = limit_table::load_of_long(self.ask.chart, triangulation, c, self.ask.limits, &self.normals);
-            let long = wraps || self.too_long(triangulation, (c, all.given[t]));
-            if load.worst() <= 1.0 && !long {
+            let ratio = limit_table::ratio_of_long(self.input.chart, triangulation, c, self.input.limits, &self.normals);
+            let long = wraps || self.too_long(triangulation, c, all.given[t]);
+            if ratio.worst() <= 1.0 && !long {
                 continue;
             }
-            let uv = c.map(|n| DVec2::from(self.ask.chart.uv(triangulation.xy[n as usize])));
+            let uv = c.map(|n| DVec2::from(self.input.chart.uv(triangulation.xy[n as usize])));
             let middle = (uv[0] + uv[1] + uv[2]) / 3.0;
-            if self.worst.is_none_or(|(worst, _)| load.worst() > worst.worst()) {
-                self.worst = Some((load, c.iter().map(|n| triangulation.p[*n as usize]).sum::<DVec3>() / 3.0));
+            if self.worst.is_none_or(|(worst, _)| ratio.worst() > worst.worst()) {
+                self.worst = Some((ratio, c.iter().map(|n| triangulation.p[*n as usize]).sum::<DVec3>() / 3.0));
             }
             let leaf = self.cells.find(middle, [true; 2]);
             if self.cells.all()[leaf as usize].class == Class::Exterior {
                 continue;
             }
             let of_border = c.iter().all(|n| *n < triangulation.fixed);
-            if (of_border || !load.worst().is_finite()) && self.is_hopeless(leaf) {
+            if (of_border || !ratio.worst().is_finite()) && self.is_uncuttable(leaf) {
                 return Vec::new();
             }
             let bounds = (uv[0].min(uv[1]).min(uv[2]), uv[0].max(uv[1]).max(uv[2]));
             if let Some(axis) = self.towards(leaf, bounds) {
-                bad.entry(leaf).or_insert((axis, 2));
+                bad.entry(leaf).or_insert(Cut { axis, parts: 2 });
             }
         }
         bad.into_iter().collect()
     }
 
-    /// Whether smaller cells help no more where nothing bounds the surface, or between nodes of a border alone: a cell reaches no farther than a
-    /// part of the chord error already, and the steps of the border beside it, which are given, stand on both sides of a fold.
-    fn is_hopeless(&mut self, leaf: u32) -> bool {
+    /// Whether cutting a cell has no effect on triangles over unbounded parts of the surface or between border nodes alone: the cell is already
+    /// smaller than a part of the chord error, and the steps of the border beside it, which are given, lie on both sides of a fold.
+    fn is_uncuttable(&mut self, leaf: u32) -> bool {
         let (low, high) = (self.cells.all()[leaf as usize].low, self.cells.all()[leaf as usize].high);
-        self.ask.limits.chord.is_some_and(|limit| self.lengths(low, high).max_element() <= FINE * limit)
+        self.input.limits.chord.is_some_and(|limit| self.lengths(low, high).max_element() <= ISOLINES.min_cell_share * limit)
     }
 
     /// Whether the corners of a triangle lie on a straight line, within the tolerance.
     fn is_flat(&self, triangulation: &Triangulation, c: [u32; 3]) -> bool {
         let [a, b, d] = c.map(|n| triangulation.p[n as usize]);
         let longest = a.distance(b).max(b.distance(d)).max(d.distance(a));
-        (b - a).cross(d - a).length() <= self.ask.point * longest
+        (b - a).cross(d - a).length() <= self.input.point * longest
     }
 
-    /// Whether the surface between the places of a triangle without area goes round a good way off the line of its corners, and
-    /// farther than the chord error: they are on both sides of a seam, or in several poles.
+    /// Whether the surface between the places of a triangle without area is far from the line of its corners, by more than a share
+    /// of its length and than the chord error: they are on both sides of a seam, or in several poles.
     fn wraps(&self, triangulation: &Triangulation, c: [u32; 3]) -> bool {
-        let chart = self.ask.chart;
+        let chart = self.input.chart;
         let places = c.map(|n| DVec2::from(chart.uv(triangulation.xy[n as usize])));
         let columns = from_pole(&|at| chart.tangents(at.into()), places);
         let middle = (columns[0] + columns[1] + columns[2]) / 3.0;
@@ -114,17 +107,17 @@ impl Work<'_> {
             .unwrap_or_default();
         let off = chart.evaluator().point(middle.x, middle.y) - a;
         let along = (b - a).normalize_or_zero();
-        let near = (ROUND * a.distance(b) + self.ask.point).max(self.ask.limits.chord.unwrap_or(0.0));
+        let near = (ISOLINES.max_flat_offset * a.distance(b) + self.input.point).max(self.input.limits.chord.unwrap_or(0.0));
         (off - along * off.dot(along)).length() > near
     }
 
     /// Whether a side of a triangle that is no edge of the border is longer than cells may be.
-    fn too_long(&self, triangulation: &Triangulation, (c, given): ([u32; 3], u8)) -> bool {
+    fn too_long(&self, triangulation: &Triangulation, c: [u32; 3], given: u8) -> bool {
         let p = c.map(|n| triangulation.p[n as usize]);
-        let most = |p: DVec3| self.ask.rules.at(p, self.ask.size);
+        let most = |p: DVec3| self.input.rules.at(p, self.input.size);
         (0..3).filter(|k| given >> k & 1 == 0).any(|k| {
             let (a, b) = (p[(k + 1) % 3], p[(k + 2) % 3]);
-            a.distance(b) > STRETCH * most(a).max(most(b))
+            a.distance(b) > ISOLINES.max_side_ratio * most(a).max(most(b))
         })
     }
 }

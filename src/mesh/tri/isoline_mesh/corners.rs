@@ -4,27 +4,25 @@ use glam::DVec2;
 
 use crate::base::job;
 use crate::mesh::tri::fill;
-use crate::mesh::tri::isoline_mesh::Work;
+use crate::mesh::tri::isoline_mesh::IsolineMesher;
 use crate::mesh::tri::marks::corners as box_corners;
+use crate::mesh::tri::placement_settings::ISOLINES;
 use crate::mesh::tri::tree::Class;
-
-/// Nearest distance of a node to a border it is not on, as a share of the cells about it.
-const CLEAR: f64 = 0.3;
 
 /// A place where cells meet, or a border has a node on the side of one.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Corner {
+pub(crate) struct CellCorner {
     pub(crate) at: DVec2,
     /// A node of the border.
     pub(crate) border: Option<u32>,
-    /// Two nodes of the border are here, or one is too near.
+    /// Two nodes of the border are here.
     pub(crate) dropped: bool,
 }
 
-/// Corners by place, and how to find them.
-pub(crate) struct Corners {
+/// CellCorners by place, and how to find them.
+pub(crate) struct CellCorners {
     /// By u, then v.
-    pub(crate) all: Vec<Corner>,
+    pub(crate) all: Vec<CellCorner>,
     /// By v, then u.
     pub(crate) by_v: Vec<u32>,
     /// Their nodes.
@@ -35,13 +33,13 @@ fn order(a: DVec2, b: DVec2, first: usize) -> std::cmp::Ordering {
     a[first].total_cmp(&b[first]).then(a[1 - first].total_cmp(&b[1 - first]))
 }
 
-impl Corners {
+impl CellCorners {
     /// The corner at a place.
     pub(crate) fn of(&self, at: DVec2) -> Option<usize> {
         self.all.binary_search_by(|c| order(c.at, at, 0)).ok()
     }
 
-    /// Corners strictly between two places of one value of u (axis 1 runs) or v (axis 0 runs), ascending.
+    /// CellCorners strictly between two places of one value of u (axis 1 runs) or v (axis 0 runs), ascending.
     fn between(&self, from: DVec2, to: DVec2, axis: usize) -> Vec<usize> {
         let place = |k: usize| if axis == 1 { k } else { self.by_v[k] as usize };
         let first = partition(self.all.len(), |k| order(self.all[place(k)].at, from, 1 - axis).is_le());
@@ -60,13 +58,13 @@ fn partition(n: usize, holds: impl Fn(usize) -> bool) -> usize {
     low
 }
 
-impl Work<'_> {
-    /// Corners of cells and nodes of borders on their sides.
-    pub(crate) fn corners(&self) -> Corners {
-        let mut all: Vec<Corner> = Vec::new();
+impl IsolineMesher<'_> {
+    /// CellCorners of cells and nodes of borders on their sides.
+    pub(crate) fn corners(&self) -> CellCorners {
+        let mut all: Vec<CellCorner> = Vec::new();
         for cell in self.cells.all().iter().filter(|c| c.is_leaf() && c.class != Class::Exterior) {
             job::poll();
-            all.extend(box_corners((cell.low, cell.high)).map(|at| Corner { at, border: None, dropped: false }));
+            all.extend(box_corners((cell.low, cell.high)).map(|at| CellCorner { at, border: None, dropped: false }));
         }
         let near = self.cells.near;
         for (n, at) in self.at.iter().enumerate() {
@@ -87,19 +85,19 @@ impl Work<'_> {
                     }
                 }
                 if on {
-                    all.push(Corner { at: snapped, border: Some(n as u32), dropped: false });
+                    all.push(CellCorner { at: snapped, border: Some(n as u32), dropped: false });
                 }
             }
         }
         all.sort_by(|a, b| order(a.at, b.at, 0).then(b.border.cmp(&a.border)));
         let merged = all
             .chunk_by(|a, b| a.at == b.at)
-            .map(|same| Corner { dropped: same.iter().any(|c| c.border.is_some() && c.border != same[0].border), ..same[0] });
-        let all: Vec<Corner> = merged.collect();
+            .map(|same| CellCorner { dropped: same.iter().any(|c| c.border.is_some() && c.border != same[0].border), ..same[0] });
+        let all: Vec<CellCorner> = merged.collect();
         let mut by_v: Vec<u32> = (0..all.len() as u32).collect();
         by_v.sort_by(|a, b| order(all[*a as usize].at, all[*b as usize].at, 1));
         let node = vec![None; all.len()];
-        Corners { all, by_v, node }
+        CellCorners { all, by_v, node }
     }
 
     /// Whether a place is too near to a border, or outside.
@@ -112,14 +110,14 @@ impl Work<'_> {
             let along = b - a;
             let square = along.length_squared();
             let t = if square > 0.0 { (-a.dot(along) / square).clamp(0.0, 1.0) } else { 0.0 };
-            (a + along * t).length() < CLEAR
+            (a + along * t).length() < ISOLINES.min_border_distance
         };
         around().any(|c| c.segments.iter().any(close)) || !around().any(|c| c.class == Class::Interior) && !self.cells.holds(at)
     }
 }
 
-/// Corners round a cell, counter-clockwise, with those on its sides; `None` where one of its own has no node.
-pub(crate) fn polygon(corners: &Corners, (low, high): (DVec2, DVec2)) -> Option<Vec<usize>> {
+/// CellCorners round a cell, counter-clockwise, with those on its sides; `None` where one of its own has no node.
+pub(crate) fn polygon(corners: &CellCorners, (low, high): (DVec2, DVec2)) -> Option<Vec<usize>> {
     let own = box_corners((low, high)).map(|at| corners.of(at).filter(|k| corners.node[*k].is_some()));
     let [a, b, c, d] = [own[0]?, own[1]?, own[2]?, own[3]?];
     let mut round = Vec::new();
@@ -133,5 +131,5 @@ pub(crate) fn polygon(corners: &Corners, (low, high): (DVec2, DVec2)) -> Option<
         }
         round.extend(on);
     }
-    (round.len() <= fill::MOST).then_some(round)
+    (round.len() <= fill::MAX_NODES).then_some(round)
 }

@@ -1,20 +1,20 @@
-//! What is told of a face laid out: its cells, how far their marks agree with the winding, and what decided their sizes.
+//! The summary of a face triangulated between isolines: its cells, how far their marks agree with the winding, and what decided their sizes.
 
 use std::collections::BTreeMap;
 
 use crate::base::job;
 use crate::mesh::request::decider::{Decider, Tally, Why};
-use crate::mesh::tri::isoline_mesh::Work;
-use crate::mesh::tri::isoline_mesh::corners::Corners;
+use crate::mesh::tri::isoline_mesh::IsolineMesher;
+use crate::mesh::tri::isoline_mesh::corners::CellCorners;
 use crate::mesh::tri::marks::{corners, marks};
 use crate::mesh::tri::tree::Class;
 use crate::mesh::tri::triangulation::Triangulation;
 
-impl Work<'_> {
-    /// Counts of cells, and at how many corners beside borders the marks say what the winding does.
-    pub(crate) fn tally(&self, known: &Corners) -> Tally {
+impl IsolineMesher<'_> {
+    /// Counts of cells, and at how many corners beside borders the marks agree with the winding.
+    pub(crate) fn tally(&self, known: &CellCorners) -> Tally {
         let mut tally = Tally::default();
-        let loops = self.ask.outline.loops.len() as u32;
+        let loops = self.input.outline.loops.len() as u32;
         for cell in self.cells.all().iter().filter(|c| c.is_leaf()) {
             job::poll();
             match cell.class {
@@ -39,7 +39,7 @@ impl Work<'_> {
     }
 
     /// What decided, with the number of nodes inside.
-    pub(crate) fn deciders(&self, corners: &Corners, triangulation: &Triangulation) -> Vec<Decider> {
+    pub(crate) fn deciders(&self, corners: &CellCorners, triangulation: &Triangulation) -> Vec<Decider> {
         let mut found: BTreeMap<Why, Decider> = BTreeMap::new();
         for (corner, node) in corners.all.iter().zip(&corners.node) {
             job::poll();

@@ -1,27 +1,14 @@
-//! Triangles that break a limit divided, and lengths squeezed where that does not do.
+//! Triangles that exceed a limit divided, and lengths lowered where that is not sufficient.
 
 use crate::base::fault::Result;
 use crate::base::job::{self, Job};
-use crate::mesh::tri::optimize::repair::{Keep, Plan, Worth};
+use crate::mesh::tri::optimize::repair::{Keep, PatchPlan, PlanThreshold};
 use crate::mesh::tri::optimize::{LimitCheck, MeshOptimizer};
+use crate::mesh::tri::optimize_settings::DIVISION;
 use crate::mesh::tri::pending::Pending;
 
-/// Divisions of triangles that break a limit.
-const DIVISIONS: usize = 64;
-/// Divisions before lengths are squeezed where a limit is still broken: what is mended there would break it again and again.
-const PATIENCE: usize = 2;
-/// Divisions after which nothing is mended that would break a limit.
-const TOO_OFTEN: usize = 16;
-/// What lengths are squeezed by.
-const SQUEEZE: f64 = 0.93;
-/// What is wanted less of the quality while more than one triangle in so many breaks a limit.
-const ROUGH: f64 = 0.05;
-const FEW_DIVISOR: usize = 200;
-/// One triangle in so many may be divided; where more break a limit, the lengths were wrong.
-const MANY: usize = 12;
-
 impl<'a> MeshOptimizer<'a> {
-    /// Triangles that break a limit, given those that did when it was looked at last.
+    /// Triangles that exceed a limit, given those that did at the last check.
     pub fn broken(&mut self, limit_check: &dyn LimitCheck, before: &[u32]) -> Vec<u32> {
         let nodes = self.unseen.take();
         let mut some = self.triangles_at(&nodes);
@@ -31,22 +18,22 @@ impl<'a> MeshOptimizer<'a> {
         limit_check.broken(&self.triangulation, &some)
     }
 
-    /// Whether so few triangles break a limit that dividing them will do.
+    /// Whether so few triangles exceed a limit that dividing them is sufficient.
     pub fn are_few(&self, broken: &[u32]) -> bool {
-        broken.len() * MANY <= self.triangulation.tri.len()
+        broken.len() * DIVISION.many <= self.triangulation.tri.len()
     }
 
-    /// Puts nodes into triangles that break a limit until none does, or too many do; what is left of `bad`.
+    /// Puts nodes into triangles that exceed a limit until none does, or too many do; what is left of `bad`.
     ///
-    /// Where changes can be asked about ahead, only rough triangles are mended while many are divided, for what mending breaks has
-    /// to be divided again; when all keep their limits, the others are mended so that none breaks one anew.
+    /// Where changes can be checked before they are made, only rough triangles are repaired while many are divided, since repaired ones that
+    /// exceed a limit have to be divided again; when all keep their limits, the others are repaired within the limits.
     pub fn divide(&mut self, limit_check: &'a dyn LimitCheck, mut bad: Vec<u32>, job: &Job) -> Result<Vec<u32>> {
-        let (wanted, mut settled) = (self.settings.wanted, false);
-        for round in 0..DIVISIONS {
+        let (wanted, mut settled) = (self.settings.min_quality, false);
+        for round in 0..DIVISION.max_rounds {
             bad = self.broken(limit_check, &bad);
-            if bad.is_empty() && limit_check.foresees() && !settled && self.settings.smooth > 0 {
+            if bad.is_empty() && limit_check.is_per_triangle() && !settled && self.settings.smoothing_rounds > 0 {
                 settled = true;
-                (self.limit_check, self.settings.wanted) = (Some(limit_check), wanted);
+                (self.limit_check, self.settings.min_quality) = (Some(limit_check), wanted);
                 self.changed = Pending::all(self.triangulation.p.len());
                 self.repair_last(job)?;
                 bad = self.broken(limit_check, &bad);
@@ -60,8 +47,8 @@ impl<'a> MeshOptimizer<'a> {
                 if !self.triangulation.alive(t) {
                     continue;
                 }
-                if round >= PATIENCE {
-                    self.squeeze(t);
+                if round >= DIVISION.rounds_before_lowering {
+                    self.lower_sizes(t);
                 }
                 divided |= self.split(t);
             }
@@ -69,10 +56,10 @@ impl<'a> MeshOptimizer<'a> {
                 break;
             }
             self.flip_all();
-            let rough = limit_check.foresees() && round > 0 && bad.len() * FEW_DIVISOR > self.triangulation.tri.len();
-            self.settings.wanted = if rough { wanted - ROUGH } else { wanted };
-            // What goes to and fro is mended within the limits from now on.
-            if round >= TOO_OFTEN && limit_check.foresees() && self.limit_check.is_none() {
+            let rough = limit_check.is_per_triangle() && round > 0 && bad.len() * DIVISION.few > self.triangulation.tri.len();
+            self.settings.min_quality = if rough { wanted - DIVISION.rough_reduction } else { wanted };
+            // Triangles that alternate are repaired within the limits from now on.
+            if round >= DIVISION.rounds_before_strict_repair && limit_check.is_per_triangle() && self.limit_check.is_none() {
                 self.limit_check = Some(limit_check);
             }
             self.repair();
@@ -81,12 +68,12 @@ impl<'a> MeshOptimizer<'a> {
         Ok(bad)
     }
 
-    /// Lengths wanted at the corners of a triangle are a little shorter from now on.
-    fn squeeze(&mut self, t: u32) {
+    /// Lowers the lengths wanted at the corners of a triangle.
+    fn lower_sizes(&mut self, t: u32) {
         for n in self.triangulation.tri[t as usize].map(|n| n as usize) {
-            self.tried.change(n as u32);
-            self.squeezed[n] *= SQUEEZE;
-            self.triangulation.size[n] *= SQUEEZE;
+            self.failed_repairs.change(n as u32);
+            self.size_factor[n] *= DIVISION.size_factor;
+            self.triangulation.size[n] *= DIVISION.size_factor;
         }
     }
 
@@ -102,16 +89,16 @@ impl<'a> MeshOptimizer<'a> {
             let plan = self
                 .triangulation
                 .patch(&[t, self.triangulation.across[t as usize][k]], &mut patch)
-                .and_then(|()| self.plan(&patch, Keep::New, Worth::ANY));
-            let made = match plan {
-                Some((worst, Plan::Star(star, node))) if worst > 0.0 => {
+                .and_then(|()| self.plan(&patch, Keep::New, PlanThreshold::ANY));
+            let is_split = match plan {
+                Some((worst, PatchPlan::Star(star, node))) if worst > 0.0 => {
                     self.restar(&patch, node, &star);
                     true
                 }
                 _ => false,
             };
             self.patch = patch;
-            if made {
+            if is_split {
                 return true;
             }
         }

@@ -7,9 +7,7 @@ use crate::base::tolerance::PARALLEL;
 use crate::base::triangulate_points::NO_TRIANGLE;
 use crate::mesh::chart::outline::area2;
 use crate::mesh::tri::optimize::MeshOptimizer;
-
-/// What a change must gain.
-pub(crate) const GAIN: f64 = 0.001;
+use crate::mesh::tri::optimize_settings::REPAIR;
 
 impl MeshOptimizer<'_> {
     /// Flips every free side whose opposite angles in space exceed a half turn together.
@@ -25,7 +23,7 @@ impl MeshOptimizer<'_> {
             }
             for k in 0..3 {
                 let other = self.triangulation.across[t as usize][k];
-                if left > 0 && self.wants_flip(t, k) {
+                if left > 0 && self.needs_flip(t, k) {
                     left -= 1;
                     self.triangulation.flip(t, k);
                     open.push(other);
@@ -38,7 +36,7 @@ impl MeshOptimizer<'_> {
         }
     }
 
-    fn wants_flip(&self, t: u32, k: usize) -> bool {
+    fn needs_flip(&self, t: u32, k: usize) -> bool {
         let Some(quad) = self.quad(t, k) else { return false };
         let [a, b, c, d] = quad.map(|n| self.triangulation.p[n as usize]);
         let cot = |tip: DVec3, x: DVec3, y: DVec3| {
@@ -48,7 +46,7 @@ impl MeshOptimizer<'_> {
         cot(a, b, d) + cot(c, b, d) < -PARALLEL && self.convex(quad)
     }
 
-    /// Flips a side if the worse of the two triangles gets better.
+    /// Flips a side if the worse of the two triangles gets better; whether it did.
     pub(crate) fn flip_worse(&mut self, t: u32) -> bool {
         for k in 0..3 {
             let Some(quad) = self.quad(t, k) else { continue };
@@ -58,7 +56,7 @@ impl MeshOptimizer<'_> {
             let [na, nb, nc, nd] = quad;
             let before = self.triangulation.shape([na, nb, nd]).min(self.triangulation.shape([nc, nd, nb]));
             let after = self.triangulation.shape([na, nb, nc]).min(self.triangulation.shape([na, nc, nd]));
-            if after > before + GAIN && self.keeps([na, nb, nc], None) && self.keeps([na, nc, nd], None) {
+            if after > before + REPAIR.min_gain && self.keeps([na, nb, nc], None) && self.keeps([na, nc, nd], None) {
                 let other = self.triangulation.across[t as usize][k];
                 self.triangulation.flip(t, k);
                 self.wake(t);

@@ -1,4 +1,4 @@
-//! Bad triangles mended, worst first: a corner moved, a side flipped, or a patch made anew with a node more or less.
+//! Repair of bad triangles, worst first: a corner moved, a side flipped, or a patch made anew with a node more or less.
 
 use glam::{DVec2, DVec3};
 
@@ -6,34 +6,30 @@ use crate::base::triangulate_points::NO_TRIANGLE;
 use crate::base::{job, work};
 use crate::mesh::chart::outline::area2;
 use crate::mesh::tri::optimize::MeshOptimizer;
-use crate::mesh::tri::optimize::flips::GAIN;
+use crate::mesh::tri::optimize_settings::REPAIR;
 use crate::mesh::tri::shape::Star;
 use crate::mesh::tri::triangulation::Patch;
 
-/// Minimum quality of the start, relative to the current worst, for the search to run.
-const MIN_START_RATIO: f64 = 0.6;
-/// Work of a bad triangle that is looked at, and of a patch that is planned anew, in evaluations of the surface.
-const MEND_WORK: u64 = 20;
-const PLAN_WORK: u64 = 20;
-/// What a change must gain where all is fair.
-const MIN_GAIN: f64 = 0.01;
-
 impl MeshOptimizer<'_> {
-    /// Works on triangles below the wanted quality, the worst first; how many changes were made.
+    /// Repairs triangles below the wanted quality, the worst first; number of changes.
     pub fn repair(&mut self) -> usize {
         let changed = self.changed.take();
-        let mut bad: Vec<(f64, u32)> =
-            self.triangles_at(&changed).into_iter().map(|t| (self.worth(t), t)).filter(|(q, _)| *q < self.settings.wanted).collect();
+        let mut bad: Vec<(f64, u32)> = self
+            .triangles_at(&changed)
+            .into_iter()
+            .map(|t| (self.penalized_quality(t), t))
+            .filter(|(q, _)| *q < self.settings.min_quality)
+            .collect();
         bad.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let mut changes = 0;
         for (_, t) in bad {
             job::poll();
             for _ in 0..3 {
-                if !self.triangulation.alive(t) || self.worth(t) >= self.settings.wanted {
+                if !self.triangulation.alive(t) || self.penalized_quality(t) >= self.settings.min_quality {
                     break;
                 }
                 if !self.repair_triangle(t) {
-                    self.tried.give_up(t);
+                    self.failed_repairs.give_up(t);
                     break;
                 }
                 changes += 1;
@@ -43,48 +39,48 @@ impl MeshOptimizer<'_> {
     }
 
     fn repair_triangle(&mut self, t: u32) -> bool {
-        work::spend(MEND_WORK);
+        work::spend(REPAIR.triangle_work);
         self.shift_corners(t) || self.flip_worse(t) || self.rebuild(t)
     }
 
-    /// What a change must gain where the worst triangle is so good.
-    fn gain(&self, worst: f64) -> f64 {
-        if worst < self.settings.fair { GAIN } else { MIN_GAIN }
+    /// Least gain of a change where the worst triangle has a quality.
+    fn min_gain(&self, worst: f64) -> f64 {
+        if worst < self.settings.fair_quality { REPAIR.min_gain } else { REPAIR.min_fair_gain }
     }
 
-    /// What a triangle is worth: its quality less what its longest side takes.
-    pub(crate) fn worth(&self, t: u32) -> f64 {
+    /// The quality of a triangle, lowered where a side is too long.
+    pub(crate) fn penalized_quality(&self, t: u32) -> f64 {
         let c = self.triangulation.tri[t as usize];
         let shape = self.triangulation.shape(c);
-        let mut worth = shape;
+        let mut quality = shape;
         for k in 0..3 {
             let (i, j) = (c[k], c[(k + 1) % 3]);
             if self.triangulation.is_free(i) || self.triangulation.is_free(j) {
                 let size =
                     if self.triangulation.is_free(i) { self.triangulation.size[i as usize] } else { self.triangulation.size[j as usize] };
                 let length = self.triangulation.p[i as usize].distance(self.triangulation.p[j as usize]);
-                worth = worth.min(shape * (size * self.settings.longest / length).min(1.0));
+                quality = quality.min(shape * (size * self.settings.max_length_ratio / length).min(1.0));
             }
         }
-        worth
+        quality
     }
 
     /// Moves a corner to where its worst triangle is best.
     fn shift_corners(&mut self, t: u32) -> bool {
         let mut any = false;
-        let since = self.tried.since(t);
+        let since = self.failed_repairs.since(t);
         for node in self.triangulation.tri[t as usize] {
             if !self.triangulation.is_free(node) {
                 continue;
             }
             self.fill_rim(node);
-            if !self.tried.is_new(self.ring.node.iter().copied().chain([node]), since) {
+            if !self.failed_repairs.is_new(self.ring.node.iter().copied().chain([node]), since) {
                 continue;
             }
             let (xy, p) = (self.triangulation.xy[node as usize], self.triangulation.p[node as usize]);
             let before = self.rim.worst(xy, p);
             let star = self.rim.best(self.chart_surface, xy, p);
-            if star.worst > before + self.gain(before) && self.star_keeps(&self.ring.node, node, &star) {
+            if star.worst > before + self.min_gain(before) && self.star_keeps(&self.ring.node, node, &star) {
                 self.place(node, star.xy, star.p);
                 any = true;
             }
@@ -94,19 +90,22 @@ impl MeshOptimizer<'_> {
 
     /// Tries patches round a triangle with a node more or less; takes the best.
     fn rebuild(&mut self, t: u32) -> bool {
-        let mut best: Option<(f64, Patch, Plan)> = None;
-        let since = self.tried.since(t);
+        let mut best: Option<(f64, Patch, PatchPlan)> = None;
+        let since = self.failed_repairs.since(t);
         for (tri, keep) in self.candidates(t) {
-            if !self.tried.is_new(tri.iter().flat_map(|t| self.triangulation.tri[*t as usize]), since) {
+            if !self.failed_repairs.is_new(tri.iter().flat_map(|t| self.triangulation.tri[*t as usize]), since) {
                 continue;
             }
-            let before = tri.iter().map(|t| self.worth(*t)).fold(f64::INFINITY, f64::min);
+            let before = tri.iter().map(|t| self.penalized_quality(*t)).fold(f64::INFINITY, f64::min);
             let mut patch = std::mem::take(&mut self.patch);
             let fits = self.triangulation.patch(&tri, &mut patch);
             if fits.is_some()
-                && let Some((after, plan)) =
-                    self.plan(&patch, keep, Worth { least: before * MIN_START_RATIO, more: before + best.as_ref().map_or(0.0, |b| b.0) })
-                && after > before + self.gain(before)
+                && let Some((after, plan)) = self.plan(
+                    &patch,
+                    keep,
+                    PlanThreshold { first: before * REPAIR.min_start_ratio, best: before + best.as_ref().map_or(0.0, |b| b.0) },
+                )
+                && after > before + self.min_gain(before)
                 && best.as_ref().is_none_or(|b| after - before > b.0)
                 && self.plan_keeps(&patch, &plan)
             {
@@ -116,8 +115,8 @@ impl MeshOptimizer<'_> {
         }
         let Some((_, patch, plan)) = best else { return false };
         match plan {
-            Plan::Star(star, node) => self.restar(&patch, node, &star),
-            Plan::Fan(k) => {
+            PatchPlan::Star(star, node) => self.restar(&patch, node, &star),
+            PatchPlan::Fan(k) => {
                 self.triangulation.refan(&patch, k);
                 self.wake_patch(&patch);
             }
@@ -136,12 +135,12 @@ impl MeshOptimizer<'_> {
         (0..n).all(|i| self.keeps([node, rim[i], rim[(i + 1) % n]], Some((star.xy, star.p))))
     }
 
-    fn plan_keeps(&self, patch: &Patch, plan: &Plan) -> bool {
+    fn plan_keeps(&self, patch: &Patch, plan: &PatchPlan) -> bool {
         let rim = &patch.rim;
         let n = rim.len();
         match plan {
-            Plan::Star(star, node) => self.star_keeps(rim, node.unwrap_or(u32::MAX), star),
-            Plan::Fan(k) => (1..n - 1).all(|i| self.keeps([rim[*k], rim[(k + i) % n], rim[(k + i + 1) % n]], None)),
+            PatchPlan::Star(star, node) => self.star_keeps(rim, node.unwrap_or(u32::MAX), star),
+            PatchPlan::Fan(k) => (1..n - 1).all(|i| self.keeps([rim[*k], rim[(k + i) % n], rim[(k + i + 1) % n]], None)),
         }
     }
 
@@ -185,31 +184,31 @@ impl MeshOptimizer<'_> {
         sets
     }
 
-    /// The best that can be made of a patch, where that may be worth it.
-    pub(crate) fn plan(&mut self, patch: &Patch, keep: Keep, worth: Worth) -> Option<(f64, Plan)> {
-        work::spend(PLAN_WORK);
+    /// The best plan of a patch with its worst quality, where that may exceed the threshold.
+    pub(crate) fn plan(&mut self, patch: &Patch, keep: Keep, threshold: PlanThreshold) -> Option<(f64, PatchPlan)> {
+        work::spend(REPAIR.patch_work);
         self.rim.fill(patch.rim.iter().map(|n| (self.triangulation.p[*n as usize], self.triangulation.xy[*n as usize])));
         if let Keep::None = keep {
             return self.best_fan(patch);
         }
-        if self.rim.ceiling() <= worth.more {
+        if self.rim.ceiling() <= threshold.best {
             return None;
         }
         let (xy, p) = self.rim.middle();
         let xy = self.chart_surface.clamp(xy);
-        self.rim.longest = self.field.size(xy, p) * self.squeezed(&patch.rim) * self.settings.longest;
+        self.rim.longest = self.field.size(xy, p) * self.mean_size_factor(&patch.rim) * self.settings.max_length_ratio;
         // A rim that is far too large or too small for one node is not searched for its best place.
         let p = self.chart_surface.point(xy);
-        if self.rim.worst(xy, p) < worth.least {
+        if self.rim.worst(xy, p) < threshold.first {
             return None;
         }
         let star = self.rim.best(self.chart_surface, xy, p);
         let node = if let Keep::One(node) = keep { Some(node) } else { None };
-        (star.worst > 0.0).then_some((star.worst, Plan::Star(star, node)))
+        (star.worst > 0.0).then_some((star.worst, PatchPlan::Star(star, node)))
     }
 
     /// The fan of the rim's node that gives the best worst triangle.
-    fn best_fan(&self, patch: &Patch) -> Option<(f64, Plan)> {
+    fn best_fan(&self, patch: &Patch) -> Option<(f64, PatchPlan)> {
         let n = patch.rim.len();
         let (p, xy) = (self.rim.points(), self.rim.places());
         let mut best: Option<(f64, usize)> = None;
@@ -222,7 +221,7 @@ impl MeshOptimizer<'_> {
                     break;
                 }
                 let far = p[k].distance(p[a]);
-                let longest = self.triangulation.size[patch.rim[a] as usize] * self.settings.longest;
+                let longest = self.triangulation.size[patch.rim[a] as usize] * self.settings.max_length_ratio;
                 let share = if i > 1 { (longest / far).min(1.0) } else { 1.0 };
                 worst = worst.min(self.triangulation.shape([k, a, b].map(|i| patch.rim[i])) * share);
             }
@@ -230,20 +229,22 @@ impl MeshOptimizer<'_> {
                 best = Some((worst, k));
             }
         }
-        best.map(|(worst, k)| (worst, Plan::Fan(k)))
+        best.map(|(worst, k)| (worst, PatchPlan::Fan(k)))
     }
 }
 
-/// What a patch made anew must be worth: its first guess, and its best.
+/// Least qualities of a plan.
 #[derive(Clone, Copy)]
-pub(crate) struct Worth {
-    pub least: f64,
-    pub more: f64,
+pub(crate) struct PlanThreshold {
+    /// Of its first guess.
+    pub first: f64,
+    /// Of its best place, by the bound for the rim.
+    pub best: f64,
 }
 
-impl Worth {
+impl PlanThreshold {
     /// Anything.
-    pub const ANY: Self = Self { least: f64::NEG_INFINITY, more: f64::NEG_INFINITY };
+    pub const ANY: Self = Self { first: f64::NEG_INFINITY, best: f64::NEG_INFINITY };
 }
 
 /// Which node a patch keeps.
@@ -257,7 +258,7 @@ pub(crate) enum Keep {
     None,
 }
 
-pub(crate) enum Plan {
+pub(crate) enum PatchPlan {
     Star(Star, Option<u32>),
     Fan(usize),
 }

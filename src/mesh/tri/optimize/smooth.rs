@@ -6,9 +6,7 @@ use crate::base::job;
 use crate::base::triangulate_points::NO_TRIANGLE;
 use crate::mesh::chart::parametric_surface::foot_near;
 use crate::mesh::tri::optimize::MeshOptimizer;
-
-/// A move below this share of the wanted length ends the smoothing of a node.
-const STILL: f64 = 0.005;
+use crate::mesh::tri::optimize_settings::REPAIR;
 
 impl MeshOptimizer<'_> {
     /// Moves free nodes that wait towards the area-weighted mean of their triangles' centroids, and in the next round their
@@ -32,12 +30,12 @@ impl MeshOptimizer<'_> {
         }
     }
 
-    /// One step of one node; whether it moved worth mentioning.
+    /// One step of one node; whether it moved by more than the least move.
     fn relax(&mut self, node: u32) -> bool {
         self.fill_rim(node);
         let here = self.triangulation.p[node as usize];
         let before = self.rim.worst(self.triangulation.xy[node as usize], here);
-        if before > self.settings.fine {
+        if before > self.settings.still_quality {
             return false;
         }
         let xy = self.triangulation.xy[node as usize];
@@ -58,16 +56,16 @@ impl MeshOptimizer<'_> {
         let demand = sum / (3.0 * weights) - here;
         // The same mean in the chart is nearly the foot of the one in space.
         let way = place / (3.0 * weights) - xy;
-        let mut share = self.settings.beyond;
+        let mut share = self.settings.relaxation;
         for _ in 0..3 {
             let step = demand * share;
-            if step.length() < STILL * size {
+            if step.length() < REPAIR.min_move * size {
                 return false;
             }
             let (xy, spot) = foot_near(self.chart_surface, self.chart_surface.clamp(xy + way * share), here + step, step.length());
             let p = spot.p;
-            // Where rounding has turned a triangle over already, that is no leave to turn others.
-            if self.rim.worst(xy, p) >= before.clamp(0.0, self.settings.fine) {
+            // Where rounding has turned a triangle over already, others may not be turned over.
+            if self.rim.worst(xy, p) >= before.clamp(0.0, self.settings.still_quality) {
                 self.place(node, xy, p);
                 return true;
             }
@@ -80,13 +78,13 @@ impl MeshOptimizer<'_> {
         let triangulation = &self.triangulation;
         triangulation.ring(node, &mut self.ring);
         self.rim.fill(self.ring.node.iter().map(|n| (triangulation.p[*n as usize], triangulation.xy[*n as usize])));
-        self.rim.longest = triangulation.size[node as usize] * self.settings.longest;
+        self.rim.longest = triangulation.size[node as usize] * self.settings.max_length_ratio;
     }
 
     pub(crate) fn place(&mut self, node: u32, xy: DVec2, p: DVec3) {
         self.triangulation.xy[node as usize] = xy;
         self.triangulation.p[node as usize] = p;
-        self.triangulation.size[node as usize] = self.field.size(xy, p) * self.squeezed[node as usize];
+        self.triangulation.size[node as usize] = self.field.size(xy, p) * self.size_factor[node as usize];
         self.touch(node);
     }
 }

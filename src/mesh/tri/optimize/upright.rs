@@ -5,15 +5,13 @@ use glam::{DVec2, DVec3};
 use crate::base::job;
 use crate::base::triangulate_points::NO_TRIANGLE;
 use crate::mesh::tri::optimize::MeshOptimizer;
-
-/// Passes over all triangles at most.
-const PASSES: usize = 3;
+use crate::mesh::tri::optimize_settings::REPAIR;
 
 impl MeshOptimizer<'_> {
     /// Flips sides of triangles that lie against the normal of their surface, where both new ones lie with it, have no longer side and keep
     /// the limits.
     pub fn set_upright(&mut self) {
-        for _ in 0..PASSES {
+        for _ in 0..REPAIR.max_upright_passes {
             let folded: Vec<u32> = (0..self.triangulation.tri.len() as u32).filter(|t| self.is_folded(*t)).collect();
             let mut flipped = false;
             for t in folded {

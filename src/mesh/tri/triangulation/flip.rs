@@ -6,8 +6,8 @@ use crate::mesh::chart::outline::{in_line, is_left};
 use crate::mesh::tri::shape::quality;
 use crate::mesh::tri::triangulation::Triangulation;
 
-/// Whether a new side, and the triangles on both sides of it, may be.
-type Fine<'a> = dyn Fn(&Triangulation, [u32; 2], [[u32; 3]; 2]) -> bool + 'a;
+/// Whether a new side, and the triangles on both sides of it, are accepted.
+type Accepted<'a> = dyn Fn(&Triangulation, [u32; 2], [[u32; 3]; 2]) -> bool + 'a;
 
 impl Triangulation {
     /// The diagonal of the two triangles at side `k` of `t` becomes the other one. Both must be there and unlocked.
@@ -46,8 +46,8 @@ impl Triangulation {
     /// Flips triangles whose corners lie on a straight line of the surface, or of the chart, across their longest side, where the chart
     /// allows it.
     pub fn lift_flat(&mut self) {
-        const PASSES: usize = 8;
-        for _ in 0..PASSES {
+        const MAX_PASSES: usize = 8;
+        for _ in 0..MAX_PASSES {
             let mut any = false;
             for t in 0..self.tri.len() as u32 {
                 any |= self.alive(t) && (self.quality(t) < PARALLEL || self.is_in_line(t)) && self.lift(t);
@@ -89,21 +89,22 @@ impl Triangulation {
     }
 
     /// Flips sides of triangles below a quality where the worse of the two gets better by a twentieth, no side gets longer
-    /// than the longest of both, and `fine` holds of what comes: the new side first, then both triangles.
-    pub fn raise(&mut self, below: f64, fine: &Fine) {
-        const PASSES: usize = 8;
-        const GAIN: f64 = 1.05;
-        for _ in 0..PASSES {
+    /// than the longest of both, and the new side with its two triangles is `accepted`.
+    pub fn flip_sharp(&mut self, below: f64, accepted: &Accepted) {
+        const MAX_PASSES: usize = 8;
+        const MIN_GAIN_RATIO: f64 = 1.05;
+        for _ in 0..MAX_PASSES {
             let mut any = false;
             for t in 0..self.tri.len() as u32 {
                 if !self.alive(t) || self.quality(t) >= below {
                     continue;
                 }
-                let mut ways: Vec<(f64, usize)> = (0..3).filter_map(|k| Some((self.gain(t, k)?, k))).filter(|w| w.0 > GAIN).collect();
+                let mut ways: Vec<(f64, usize)> =
+                    (0..3).filter_map(|k| Some((self.gain(t, k)?, k))).filter(|w| w.0 > MIN_GAIN_RATIO).collect();
                 ways.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
                 let found = ways.into_iter().find(|(_, k)| {
                     let (a, b, d, tip) = self.round_side(t, *k);
-                    fine(self, [a, tip], [[a, b, tip], [a, tip, d]])
+                    accepted(self, [a, tip], [[a, b, tip], [a, tip, d]])
                 });
                 if let Some((_, k)) = found {
                     self.flip(t, k);

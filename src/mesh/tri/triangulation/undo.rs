@@ -5,8 +5,8 @@ use glam::{DVec2, DVec3};
 use crate::base::triangulate_points::NO_TRIANGLE;
 use crate::mesh::tri::triangulation::Triangulation;
 
-/// Free places that one change may take.
-const DEEP: usize = 8;
+/// Largest number of free places that one change uses.
+const MAX_USED_PLACES: usize = 8;
 
 /// Some triangles with their neighbours and nodes, as they are.
 #[derive(Clone, Debug, Default)]
@@ -15,17 +15,28 @@ pub struct Before {
     nodes: Vec<(u32, DVec3, DVec2, f64, u32)>,
     /// Numbers of triangles and nodes.
     len: (usize, usize),
-    /// Free places of triangles and nodes: how many, and the last of them.
-    free: [(usize, Vec<u32>); 2],
+    /// Free places of triangles and nodes.
+    free: [FreePlaces; 2],
 }
 
-fn last(free: &[u32]) -> (usize, Vec<u32>) {
-    (free.len(), free[free.len().saturating_sub(DEEP)..].to_vec())
+/// The end of a list of free places.
+#[derive(Clone, Debug, Default)]
+struct FreePlaces {
+    /// Length of the list.
+    len: usize,
+    /// Its last places.
+    last: Vec<u32>,
 }
 
-fn put_back(free: &mut Vec<u32>, (len, last): &(usize, Vec<u32>)) {
-    free.truncate(len - last.len());
-    free.extend(last);
+impl FreePlaces {
+    fn of(list: &[u32]) -> Self {
+        Self { len: list.len(), last: list[list.len().saturating_sub(MAX_USED_PLACES)..].to_vec() }
+    }
+
+    fn put_back(&self, list: &mut Vec<u32>) {
+        list.truncate(self.len - self.last.len());
+        list.extend(&self.last);
+    }
 }
 
 impl Triangulation {
@@ -45,7 +56,7 @@ impl Triangulation {
             triangles: all.into_iter().map(triangle).collect(),
             nodes: nodes.into_iter().map(node).collect(),
             len: (self.tri.len(), self.p.len()),
-            free: [last(&self.free_tri), last(&self.free_node)],
+            free: [FreePlaces::of(&self.free_tri), FreePlaces::of(&self.free_node)],
         }
     }
 
@@ -60,13 +71,13 @@ impl Triangulation {
         self.xy.truncate(nodes);
         self.size.truncate(nodes);
         self.at.truncate(nodes);
-        put_back(&mut self.free_tri, &before.free[0]);
-        put_back(&mut self.free_node, &before.free[1]);
-        for t in &before.free[0].1 {
+        before.free[0].put_back(&mut self.free_tri);
+        before.free[1].put_back(&mut self.free_node);
+        for t in &before.free[0].last {
             self.tri[*t as usize] = [0; 3];
             self.across[*t as usize] = [NO_TRIANGLE; 3];
         }
-        for n in &before.free[1].1 {
+        for n in &before.free[1].last {
             self.at[*n as usize] = NO_TRIANGLE;
         }
         for &(t, tri, across, locked) in &before.triangles {

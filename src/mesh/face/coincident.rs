@@ -1,11 +1,11 @@
-//! Faces that fall together: elements of two faces with the same nodes, and edges inside two faces between the same two nodes of
+//! Coincident parts of faces: elements of two faces with the same nodes, and edges inside two faces between the same two nodes of
 //! their borders, in which four elements would meet.
 //!
-//! Faces that are made freely of triangles divide such an edge (`face/twins.rs`). A mapped one of triangles takes the other diagonal
+//! Free faces of triangles divide such an edge (`face/twins.rs`). A mapped one of triangles flips the diagonal
 //! of the cell; where a face has a single row of cells between two borders it gets more rows.
 
-use crate::model::fault::ModelFault;
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use crate::base::fault::Fault;
 use crate::base::par;
@@ -16,36 +16,37 @@ use crate::mesh::data::face_geometry::FaceNodes;
 use crate::mesh::data::face_mesh::{FaceMesh, element_ranges};
 use crate::mesh::data::mesh::Mesh;
 use crate::mesh::divide::verdict::Verdict;
-use crate::mesh::face::twins::{Edge, is_upright, ordered, twins};
+use crate::mesh::face::twins::{NodePair, is_upright, ordered, twins};
 use crate::mesh::request::fault::MeshFault;
 use crate::mesh::request::input::Input;
 use crate::mesh::request::limits::Limits;
 use crate::mesh::request::methods::{Elements, Method};
+use crate::model::fault::ModelFault;
 use crate::surface::{Nearest, Surface};
 
-/// What of two faces or more falls together: an edge, or two nodes of an element, with the faces.
-pub type Together = (Edge, Vec<usize>);
+/// An edge, or two nodes of an element, that two faces or more have, with these.
+pub type Coincidence = (NodePair, Vec<usize>);
 
-/// Takes other diagonals where two faces have one edge between them, and finds what falls together all the same.
-pub fn part(made: &FaceInput, prepared: &[FaceMesh], (mesh, limits): (&mut Mesh, &Limits)) -> Vec<Together> {
-    let mut left = twins(made, prepared, mesh);
+/// Flips diagonals that are edges of two faces; the coincidences that are left.
+pub fn resolve(face_input: &FaceInput, prepared: &[FaceMesh], mesh: &mut Mesh, limits: &Limits) -> Vec<Coincidence> {
+    let mut left = twins(face_input, prepared, mesh);
     for (edge, faces) in &mut left {
         let mut kept = faces.len();
         for f in faces.iter() {
-            if kept > 1 && take_other(made, &prepared[*f], &element_ranges(prepared)[*f].0, (mesh, limits), *edge) {
+            if kept > 1 && flip_diagonal(face_input, &prepared[*f], &element_ranges(prepared)[*f].0, mesh, limits, *edge) {
                 kept -= 1;
             }
         }
         faces.truncate(if kept > 1 { faces.len() } else { 0 });
     }
     left.retain(|(_, faces)| !faces.is_empty());
-    left.extend(same_elements(made, prepared, mesh));
+    left.extend(same_elements(face_input, prepared, mesh));
     left
 }
 
 /// Elements of two faces with the same nodes.
-fn same_elements(made: &FaceInput, prepared: &[FaceMesh], mesh: &Mesh) -> Vec<Together> {
-    let (border, places) = (made.nodes.total, element_ranges(prepared));
+fn same_elements(face_input: &FaceInput, prepared: &[FaceMesh], mesh: &Mesh) -> Vec<Coincidence> {
+    let (border, places) = (face_input.nodes.total, element_ranges(prepared));
     let found = par::map(prepared.len(), |f| {
         let (triangles, quads) = places[f].clone();
         let mut own: Vec<[u32; 4]> = Vec::new();
@@ -60,10 +61,18 @@ fn same_elements(made: &FaceInput, prepared: &[FaceMesh], mesh: &Mesh) -> Vec<To
     same.map(|same| ((same[0].0[0], same[0].0[1]), same.iter().map(|s| s.1).collect())).collect()
 }
 
-/// Turns the diagonal of a cell of a mapped face that is this edge; whether it is one, and the other one does.
-fn take_other(made: &FaceInput, ready: &FaceMesh, of: &std::ops::Range<usize>, (mesh, limits): (&mut Mesh, &Limits), edge: Edge) -> bool {
+/// Flips the edge where it is the diagonal of a cell of a mapped face and the other diagonal is valid; whether it did. `triangles` are those
+/// of the face.
+fn flip_diagonal(
+    face_input: &FaceInput,
+    face_mesh: &FaceMesh,
+    triangles: &Range<usize>,
+    mesh: &mut Mesh,
+    limits: &Limits,
+    edge: NodePair,
+) -> bool {
     let (FaceNodes::Grid(grid, _), FaceNodes::Grid(_, frame), Elements::Triangles) =
-        (&ready.geometry.nodes, &ready.geometry.nodes, ready.elements)
+        (&face_mesh.geometry.nodes, &face_mesh.geometry.nodes, face_mesh.elements)
     else {
         return false;
     };
@@ -75,11 +84,11 @@ fn take_other(made: &FaceInput, ready: &FaceMesh, of: &std::ops::Range<usize>, (
     };
     let Some(cell) = (0..nv).flat_map(|j| (0..nu).map(move |i| (i, j))).find(is_cell) else { return false };
     let has = |t: &[u32; 3]| t.contains(&edge.0) && t.contains(&edge.1);
-    let both: Vec<usize> = of.clone().filter(|t| has(&mesh.triangles[*t])).collect();
+    let both: Vec<usize> = triangles.clone().filter(|t| has(&mesh.triangles[*t])).collect();
     let &[first, second] = both.as_slice() else { return false };
     let tip = |t: usize| mesh.triangles[t].into_iter().find(|n| *n != edge.0 && *n != edge.1);
     let (Some(x), Some(y)) = (tip(first), tip(second)) else { return false };
-    let surface = &made.input.model.surfaces[ready.surface.index()].surface;
+    let surface = &face_input.input.model.surfaces[face_mesh.surface.index()].surface;
     let uv = |node: u32| corners(cell).into_iter().find(|(i, j)| frame.node(*i, *j) == node).map_or((0.0, 0.0), |(i, j)| grid.uv(i, j));
     // The first triangle runs from one end of the edge to the other.
     let t = mesh.triangles[first];
@@ -88,7 +97,7 @@ fn take_other(made: &FaceInput, ready: &FaceMesh, of: &std::ops::Range<usize>, (
     let parts = [[x, a, y], [y, b, x]];
     let upright = |corners: &[u32; 3]| {
         let [p, q, r] = corners.map(uv);
-        is_upright(surface, if ready.geometry.flipped { [p, r, q] } else { [p, q, r] })
+        is_upright(surface, if face_mesh.geometry.flipped { [p, r, q] } else { [p, q, r] })
     };
     if !parts.iter().all(upright) || !keeps(surface, [uv(x), uv(y)], limits) {
         return false;
@@ -104,51 +113,55 @@ fn keeps(surface: &Surface, [p, q]: [(f64, f64); 2], limits: &Limits) -> bool {
     limits.chord.is_none_or(|limit| off <= limit)
 }
 
-/// How often a face is asked for more rows, or for shorter steps, before it is refused.
-const TIMES: u32 = 3;
+/// Largest number of demands on a face for more rows, or for shorter steps.
+const MAX_DEMANDS: u32 = 3;
 
-/// What faces that fall together ask for: rows of mapped ones as verdicts; the others are changed in the layout. `None` where nothing
-/// is left to ask for.
-pub fn ask(layout: &mut Layout, prepared: &[FaceMesh], together: &[Together], asked: &mut BTreeMap<usize, u32>) -> Option<Asked> {
+/// The demand of coincident faces: more rows of mapped ones; others are changed in the layout. `None` where each face has had its demands.
+pub fn demand(
+    layout: &mut Layout,
+    prepared: &[FaceMesh],
+    coincidences: &[Coincidence],
+    demands_on: &mut BTreeMap<usize, u32>,
+) -> Option<Demand> {
     let mut rows = vec![Verdict::FINE; layout.faces.len()];
-    let (mut any, mut anew) = (false, false);
-    for f in together.iter().flat_map(|(_, faces)| faces.iter().copied()) {
+    let (mut any, mut relaid) = (false, false);
+    for f in coincidences.iter().flat_map(|(_, faces)| faces.iter().copied()) {
         let face = &mut layout.faces[f];
-        let times = asked.entry(f).or_default();
-        if rows[f].size != [1.0; 2] || *times == TIMES {
+        let times = demands_on.entry(f).or_default();
+        if rows[f].size != [1.0; 2] || *times == MAX_DEMANDS {
             continue;
         }
         match &prepared[f].geometry.nodes {
             FaceNodes::Grid(_, frame) => {
                 let (nu, nv) = frame.size();
-                rows[f].size = [nu, nv].map(|n| if n == 1 { MORE } else { 1.0 });
+                rows[f].size = [nu, nv].map(|n| if n == 1 { ROWS_FOR_ONE } else { 1.0 });
             }
-            FaceNodes::Lattice(..) if face.method == Method::Auto => (face.uneven, anew) = (Some(Uneven::Together), true),
-            FaceNodes::Lattice(..) | FaceNodes::Blocks(..) => rows[f].size = [MORE; 2],
+            FaceNodes::Lattice(..) if face.method == Method::Auto => (face.uneven, relaid) = (Some(Uneven::Together), true),
+            FaceNodes::Lattice(..) | FaceNodes::Blocks(..) => rows[f].size = [ROWS_FOR_ONE; 2],
             FaceNodes::Free(..) => {
                 face.halved += 1;
-                anew = true;
+                relaid = true;
             }
         }
-        any |= anew || rows[f].size != [1.0; 2];
+        any |= relaid || rows[f].size != [1.0; 2];
         *times += 1;
     }
-    any.then_some(if anew { Asked::Anew } else { Asked::Rows(rows) })
+    any.then_some(if relaid { Demand::NewLayout } else { Demand::Rows(rows) })
 }
 
-/// Rows asked for in place of one.
-const MORE: f64 = 2.0;
+/// Number of rows demanded in place of one.
+const ROWS_FOR_ONE: f64 = 2.0;
 
-/// What is to be done.
-pub enum Asked {
+/// The demand of coincident faces.
+pub enum Demand {
     /// The layout has changed.
-    Anew,
-    /// Faces get more rows.
+    NewLayout,
+    /// More rows by faces.
     Rows(Vec<Verdict>),
 }
 
-/// E720 for faces that fall together whatever was tried; E666 for those that are to be joined and lie on each other there.
-pub fn fault(input: &Input, layout: &Layout, mesh: &Mesh, (edge, faces): &Together) -> Fault {
+/// E720 for faces that stay coincident; E666 for faces to be joined that lie on each other there.
+pub fn fault(input: &Input, layout: &Layout, mesh: &Mesh, (edge, faces): &Coincidence) -> Fault {
     let surface = |f: usize| &input.model.surfaces[layout.faces[f].surface.index()];
     let (p, q) = (mesh.nodes[edge.0 as usize], mesh.nodes[edge.1 as usize]);
     let [first, second] = [faces[0], faces[faces.len() - 1]];

@@ -8,12 +8,12 @@ const LEVELS: i32 = 64;
 
 /// A point of the hash.
 #[derive(Clone, Copy, Debug)]
-pub struct Entry {
+pub struct HashedPoint {
     /// Where.
     pub p: DVec3,
     /// Its place in the chart.
     pub xy: DVec2,
-    /// What it stands for, for the caller.
+    /// A number of the caller.
     pub tag: u32,
     next: u32,
     level: i32,
@@ -21,17 +21,17 @@ pub struct Entry {
 
 /// Points in cubes of side 2^level × unit.
 ///
-/// A point is kept with those of its own size and with those of twice and half of it, so that one level is looked at for a place.
+/// A point is stored at the level of its size and those of twice and half of it, so that a query reads one level.
 #[derive(Clone, Debug)]
-pub struct Cells {
+pub struct PointHash {
     unit: f64,
     head: Vec<u32>,
-    entries: Vec<Entry>,
+    entries: Vec<HashedPoint>,
     /// Points may be of several sizes.
     mixed: bool,
 }
 
-impl Cells {
+impl PointHash {
     /// An empty hash; `unit` is a typical size, `mixed` says that there may be others.
     pub fn new(unit: f64, mixed: bool) -> Self {
         Self { unit, head: vec![NONE; 1 << 10], entries: Vec::new(), mixed }
@@ -70,7 +70,7 @@ impl Cells {
                 self.grow();
             }
             let slot = self.home(p, level);
-            self.entries.push(Entry { p, xy, tag, next: self.head[slot], level });
+            self.entries.push(HashedPoint { p, xy, tag, next: self.head[slot], level });
             self.head[slot] = self.entries.len() as u32 - 1;
         }
     }
@@ -88,7 +88,7 @@ impl Cells {
         }
     }
 
-    /// Whether a point nearer than `reach` is among those kept with the cube of a place: what most often is all there is to ask.
+    /// Whether a point nearer than `reach` is in the cube of a place: a fast test that is sufficient most often.
     pub fn beside(&self, p: DVec3, reach: f64, size: f64) -> bool {
         let level = self.level(size);
         let mut at = self.head[self.home(p, level)];
@@ -103,8 +103,8 @@ impl Cells {
     }
 
     /// Calls `visit` with the points nearer than `reach` and the square of their distance, of sizes within a factor of two
-    /// or so of `size`; stops when it says `true`, and tells whether it did.
-    pub fn any(&self, p: DVec3, reach: f64, size: f64, mut visit: impl FnMut(&Entry, f64) -> bool) -> bool {
+    /// or so of `size`; stops when it returns `true`; whether it did.
+    pub fn any(&self, p: DVec3, reach: f64, size: f64, mut visit: impl FnMut(&HashedPoint, f64) -> bool) -> bool {
         let level = self.level(size);
         let square = reach * reach;
         let inv = 1.0 / self.side(level);

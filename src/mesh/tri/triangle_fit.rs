@@ -1,5 +1,5 @@
-//! Triangles of a face that keep its limits: made for wanted lengths, bounded, and made again with shorter ones where a bound
-//! is broken.
+//! Triangles of a face fitted to its limits: made for wanted lengths, bounded, and made again with shorter ones where a bound
+//! exceeds a limit.
 
 use std::cell::RefCell;
 
@@ -22,46 +22,22 @@ use crate::mesh::request::methods::{Elements, Method};
 use crate::mesh::request::size_requests::floor_keeps;
 use crate::mesh::request::sources::{Body, STEEP, Source, Sources};
 use crate::mesh::size::border_spacing::{FILLED, SPACING};
-use crate::mesh::tri::build::{Lattice, Task, expected_nodes, triangulate};
+use crate::mesh::tri::build::{NodePlacement, Task, expected_nodes, triangulate};
 use crate::mesh::tri::graded_size::{Background, GradedSize};
-use crate::mesh::tri::limit_table::{LimitTable, load};
-use crate::mesh::tri::longest::{LONGEST, Longest, longest_side};
-use crate::mesh::tri::optimize::{FINEST, LimitCheck, OptimizeSettings};
+use crate::mesh::tri::limit_table::{LimitTable, ratio};
+use crate::mesh::tri::longest::{Longest, longest_side};
+use crate::mesh::tri::optimize::{LimitCheck, OptimizeSettings};
+use crate::mesh::tri::optimize_settings::{BENT_FACE, EVEN_FACE, FIT, GRADED_FACE, TREE_FACE};
 use crate::mesh::tri::triangulation::Triangulation;
-use crate::mesh::tri::trouble::Trouble;
+use crate::mesh::tri::trouble::{Outcome, Trouble};
 use crate::surface::Surface;
 
-/// Quality below which triangles are worked on.
-const WANTED: f64 = 0.92;
-/// The same where lengths vary with the bends: neighbouring triangles cannot all be equilateral there.
-const WANTED_BENT: f64 = 0.83;
-/// Quality of all its triangles with which a node is left where it is there.
-const FINE_BENT: f64 = 0.98;
-/// Quality from which on triangles are mended there only where that is worth its while.
-const FAIR_BENT: f64 = 0.78;
-/// The same for halves of squares, which have 0.83.
-pub(crate) const WANTED_TREE: f64 = 0.8;
-/// Rounds of smoothing: more move nodes on, but make no triangle better (mean quality differs in the third digit).
-const SMOOTH: usize = 5;
-/// The same where lengths vary with the bends: dividing and mending move most nodes again.
-const SMOOTH_BENT: usize = 4;
-/// Share of the way to the mean that a node is moved: five rounds beyond it do what eight do that stop there, as for any relaxation
-/// from neighbour to neighbour.
-const BEYOND: f64 = 1.6;
-/// Rounds that stop at the mean, where lengths grow from short pieces: there nodes overshoot.
-const SMOOTH_GRADED: usize = 8;
-/// The same for corners of cells, which start far from where they end.
-const SMOOTH_TREE: usize = 30;
-/// What stands for the edges of a border among sources.
-const BORDER: u32 = u32::MAX;
-/// What is made smaller is made a little more so.
-pub(crate) const LESS: f64 = 0.96;
-/// Times a face is made anew for its limits.
-const ROUNDS: usize = 12;
+/// The tag of the edges of a border among sources.
+const BORDER_TAG: u32 = u32::MAX;
 
-/// A face being fitted: what its triangles are made from and measured by.
-pub(crate) struct Fit<'a> {
-    pub(crate) made: &'a FaceInput<'a>,
+/// A face being fitted to its limits, with all that its triangles follow from and are measured by.
+pub(crate) struct FaceFit<'a> {
+    pub(crate) face_input: &'a FaceInput<'a>,
     pub(crate) face: &'a Face,
     pub(crate) surface: &'a Surface,
     pub(crate) chart: &'a Chart,
@@ -71,56 +47,55 @@ pub(crate) struct Fit<'a> {
     pub(crate) settings: OptimizeSettings,
 }
 
-/// Triangles, what decided their sizes, and the cells they were made of.
-pub(crate) type Shown = (Triangulation, Vec<Decider>, Option<Tally>);
+/// The triangles of a face that keep its limits.
+pub(crate) struct FittedFace {
+    pub(crate) triangulation: Triangulation,
+    /// What decided their sizes.
+    pub(crate) deciders: Vec<Decider>,
+    /// The cells between lines of constant u and v, where they were made of such.
+    pub(crate) tally: Option<Tally>,
+}
 
-type Fitted = Result<std::result::Result<Triangulation, Trouble>>;
-
-/// Triangles that keep the limits, and what decided their sizes.
-pub(crate) fn fitting(
-    made: &FaceInput,
-    face: &Face,
-    chart: &Chart,
-    outline: &Outline,
-    job: &Job,
-) -> Result<std::result::Result<Shown, Trouble>> {
-    let surface = &made.input.model.surfaces[face.surface.index()].surface;
-    let limits = Limits::of(made.input);
+/// Triangles that keep the limits.
+pub(crate) fn fitted(face_input: &FaceInput, face: &Face, chart: &Chart, outline: &Outline, job: &Job) -> Outcome<FittedFace> {
+    let surface = &face_input.input.model.surfaces[face.surface.index()].surface;
+    let limits = Limits::of(face_input.input);
     let bent = !surface.is_flat() && (limits.chord.is_some() || limits.angle.is_some());
     let tree = face.method == Method::Quadtree;
-    let (smooth, fine, wanted, fair) = if tree {
-        (SMOOTH_TREE, FINEST, WANTED_TREE, 1.0)
-    } else if bent {
-        (SMOOTH_BENT, FINE_BENT, WANTED_BENT, FAIR_BENT)
-    } else {
-        (SMOOTH, FINEST, WANTED, 1.0)
+    let with_rounds = |settings: OptimizeSettings| {
+        let rounds = face_input.input.plan.settings.smooth.map_or(settings.smoothing_rounds, |n| n.0 as usize);
+        OptimizeSettings { smoothing_rounds: rounds, ..settings }
     };
-    let smooth = made.input.plan.settings.smooth.map_or(smooth, |n| n.0 as usize);
-    let settings = OptimizeSettings { smooth, beyond: BEYOND, fine, wanted, fair, longest: LONGEST / SPACING };
-    let rules = near(made, face, outline);
-    let longest = Longest::new(face.size.0, outline, &rules).graded(outline, made.input.plan.slope());
-    let mut fit = Fit { made, face, surface, chart, outline, limits, longest, settings };
+    let settings = with_rounds(if tree {
+        TREE_FACE
+    } else if bent {
+        BENT_FACE
+    } else {
+        EVEN_FACE
+    });
+    let rules = near(face_input, face, outline);
+    let longest = Longest::new(face.size.0, outline, &rules).graded(outline, face_input.input.plan.slope());
+    let mut fit = FaceFit { face_input, face, surface, chart, outline, limits, longest, settings };
     if face.method.is_coarse() {
-        let mut laid = fit.laid(&rules, job)?;
-        match (face.method, &mut laid) {
-            (Method::Display, Ok((triangulation, _, tally))) => {
-                fit.thin(triangulation, job)?;
-                *tally = None;
+        let mut outcome = fit.between_isolines(&rules, job)?;
+        match (face.method, &mut outcome) {
+            (Method::Display, Ok(fitted)) => {
+                fit.coarsen(&mut fitted.triangulation, job)?;
+                fitted.tally = None;
             }
-            (_, Ok((triangulation, ..))) => fit.raise(triangulation),
+            (_, Ok(fitted)) => fit.flip_sharp(&mut fitted.triangulation),
             _ => {}
         }
-        return Ok(laid);
+        return Ok(outcome);
     }
     let background = bent.then(|| fit.background(&fit.limits));
     // Growth is that of distances of nodes.
     let slope = rules.slope() / SPACING;
     let sources = Sources::new([rules.items(), &fit.short_edges(background.as_ref(), SPACING)].concat(), slope);
     if !bent && !tree && !sources.is_empty() {
-        fit.settings.beyond = 1.0;
-        fit.settings.smooth = made.input.plan.settings.smooth.map_or(SMOOTH_GRADED, |n| n.0 as usize);
+        fit.settings = with_rounds(GRADED_FACE);
     }
-    let mut field = GradedSize { sources: &sources, range: (face.size.0, made.wanted.written), spacing: SPACING, background };
+    let mut field = GradedSize { sources: &sources, range: (face.size.0, face_input.wanted.written), spacing: SPACING, background };
     fit.refuse_large(&field)?;
     let triangulation = if bent { fit.bent(&mut field, job)? } else { fit.even(&mut field, job)? };
     if matches!(triangulation, Err(Trouble::Full)) {
@@ -128,30 +103,29 @@ pub(crate) fn fitting(
     }
     Ok(triangulation.map(|triangulation| {
         let deciders = fit.deciders(&field, &triangulation);
-        (triangulation, deciders, None)
+        FittedFace { triangulation, deciders, tally: None }
     }))
 }
 
-/// About how many elements the wanted lengths ask for between borders as they are divided here, and how many the size of the
-/// face alone does; `None` where these borders cross or bound nothing.
-pub(crate) fn elements_ahead(made: &FaceInput, face: &Face) -> Option<[f64; 2]> {
-    let (_, chart, outline) = outlined(made, face)?;
-    let rules = near(made, face, &outline);
+/// Estimated numbers of elements between borders as they are divided here: for the wanted lengths, and for the size of the face alone; `None`
+/// where these borders cross or bound nothing.
+pub(crate) fn elements_ahead(face_input: &FaceInput, face: &Face) -> Option<[f64; 2]> {
+    let (_, chart, outline) = outlined(face_input, face)?;
+    let rules = near(face_input, face, &outline);
     let quads = face.elements == Elements::Quads;
     let (lattice, spacing) =
-        if quads { (Lattice::Squares, 1.0) } else { (Lattice::Triangles, if face.is_grown() { SPACING } else { 1.0 }) };
+        if quads { (NodePlacement::Squares, 1.0) } else { (NodePlacement::Triangles, if face.is_grown() { SPACING } else { 1.0 }) };
     let sources = Sources::new(rules.items().to_vec(), rules.slope() / spacing);
-    let field = GradedSize { sources: &sources, range: (face.size.0, made.wanted.written), spacing, background: None };
+    let field = GradedSize { sources: &sources, range: (face.size.0, face_input.wanted.written), spacing, background: None };
     let even = UniformSize(spacing * face.size.0);
     let fields: [&dyn SizeField; 2] = [if sources.is_empty() { &even } else { &field }, &even];
-    let settings = OptimizeSettings { smooth: 0, beyond: 1.0, fine: FINEST, wanted: WANTED, fair: 1.0, longest: LONGEST };
     let task = |field| Task {
         chart_surface: &chart,
         field,
         outline: &outline,
-        settings,
+        settings: EVEN_FACE,
         lattice,
-        most: made.input.plan.most_nodes(),
+        most: face_input.input.plan.most_nodes(),
         limit_check: None,
     };
     let nodes = expected_nodes(fields.map(task).each_ref())?;
@@ -159,34 +133,34 @@ pub(crate) fn elements_ahead(made: &FaceInput, face: &Face) -> Option<[f64; 2]> 
 }
 
 /// The sources of a plan that reach a face.
-pub(crate) fn near(made: &FaceInput, face: &Face, outline: &Outline) -> Sources {
-    let all = &made.wanted.sources;
-    let hull = made.input.model.surfaces[face.surface.index()].surface.hull().union(Box3::of(outline.p.iter().copied()));
+pub(crate) fn near(face_input: &FaceInput, face: &Face, outline: &Outline) -> Sources {
+    let all = &face_input.wanted.sources;
+    let hull = face_input.input.model.surfaces[face.surface.index()].surface.hull().union(Box3::of(outline.p.iter().copied()));
     let items = all.items().iter().filter(|source| source.reaches(&hull, all.slope(), face.size.0));
     Sources::new(items.copied().collect(), all.slope())
 }
 
-/// Sides by their lengths and triangles by their bounds.
+/// The limits of sides by their lengths, and of triangles by their bounds.
 struct Bounded<'a> {
-    fit: &'a Fit<'a>,
-    /// What is shorter is left as it is.
+    fit: &'a FaceFit<'a>,
+    /// Length of sides up to which limits are not kept, model units.
     floor: f64,
-    loads: &'a RefCell<LimitTable>,
+    ratios: &'a RefCell<LimitTable>,
 }
 
 impl LimitCheck for Bounded<'_> {
     fn broken(&self, triangulation: &Triangulation, some: &[u32]) -> Vec<u32> {
-        let mut loads = self.loads.borrow_mut();
-        loads.update(self.fit.chart, triangulation, some, &self.fit.limits);
+        let mut ratios = self.ratios.borrow_mut();
+        ratios.update(self.fit.chart, triangulation, some, &self.fit.limits);
         let mut found = self.fit.longest.broken(triangulation, some);
-        let over = |t: &u32| loads.of(*t).worst() > 1.0 && longest_side(triangulation, *t) > self.floor;
+        let over = |t: &u32| ratios.of(*t).worst() > 1.0 && longest_side(triangulation, *t) > self.floor;
         found.extend(some.iter().copied().filter(over));
         found.sort_unstable();
         found.dedup();
         found
     }
 
-    fn foresees(&self) -> bool {
+    fn is_per_triangle(&self) -> bool {
         true
     }
 
@@ -195,7 +169,7 @@ impl LimitCheck for Bounded<'_> {
         let a = first.map_or_else(|| triangulation.p[a], |first| first.1);
         let longest =
             a.distance(triangulation.p[b]).max(triangulation.p[b].distance(triangulation.p[c])).max(triangulation.p[c].distance(a));
-        longest <= self.floor || load(self.fit.chart, triangulation, corners, first, &self.fit.limits).worst() <= 1.0
+        longest <= self.floor || ratio(self.fit.chart, triangulation, corners, first, &self.fit.limits).worst() <= 1.0
     }
 }
 
@@ -204,7 +178,7 @@ impl LimitCheck for Longest<'_> {
         self.broken(triangulation, some)
     }
 
-    fn foresees(&self) -> bool {
+    fn is_per_triangle(&self) -> bool {
         false
     }
 
@@ -213,7 +187,7 @@ impl LimitCheck for Longest<'_> {
     }
 }
 
-impl Fit<'_> {
+impl FaceFit<'_> {
     /// Distances of nodes by the bends of the surface.
     pub(crate) fn background(&self, limits: &Limits) -> Background {
         let whole = self.outline.xy.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), xy| (l.min(*xy), h.max(*xy)));
@@ -229,32 +203,32 @@ impl Fit<'_> {
             let at = DVec2::from(self.chart.uv(xy));
             poles::at_tip(self.surface, &tangents, at, &wanted).unwrap_or_else(|| wanted(at)).min(size)
         };
-        Background::new(self.chart, whole, 1.0 + self.made.input.plan.slope(), &of)
+        Background::new(self.chart, whole, 1.0 + self.face_input.input.plan.slope(), &of)
     }
 
     /// Edges of the border that are so short that lengths have to grow from them; nodes are `spacing` times as far apart as
     /// sides are long.
     pub(crate) fn short_edges(&self, background: Option<&Background>, spacing: f64) -> Vec<Source> {
-        let slope = self.made.input.plan.slope();
-        let least = if self.made.wanted.written > 0.0 { self.made.wanted.floor } else { self.made.input.tolerance.point };
+        let slope = self.face_input.input.plan.slope();
+        let least = if self.face_input.wanted.written > 0.0 { self.face_input.wanted.floor } else { self.face_input.input.tolerance.point };
         let sources = |edge: [u32; 2]| {
             let [a, b] = edge.map(|n| n as usize);
             let size = self.outline.length(edge);
             let (xy, p) = (0.5 * (self.outline.xy[a] + self.outline.xy[b]), 0.5 * (self.outline.p[a] + self.outline.p[b]));
             let there = background.map_or(f64::INFINITY, |field| field.size(xy, p)).min(self.face.size.0 * SPACING);
             let body = Body::Segment(self.outline.p[a], self.outline.p[b]);
-            let from = [(size.max(self.made.wanted.floor), 1.0), (size.max(least), STEEP)];
+            let from = [(size.max(self.face_input.wanted.floor), 1.0), (size.max(least), STEEP)];
             // Nodes are as far from it as it is long.
-            let source = |(from, steep)| Source { body, radius: 0.0, size: from / spacing, steep, tag: BORDER };
-            let asks = |(from, steep): &(f64, f64)| size > 0.0 && from * (1.0 + slope * steep) < there;
-            // What is below the floor asks twice.
-            from.into_iter().take(if from[1].0 < from[0].0 { 2 } else { 1 }).filter(asks).map(source).collect::<Vec<_>>()
+            let source = |(from, steep)| Source { body, radius: 0.0, size: from / spacing, steep, tag: BORDER_TAG };
+            let is_short = |(from, steep): &(f64, f64)| size > 0.0 && from * (1.0 + slope * steep) < there;
+            // An edge below the floor is two sources.
+            from.into_iter().take(if from[1].0 < from[0].0 { 2 } else { 1 }).filter(is_short).map(source).collect::<Vec<_>>()
         };
         self.outline.edges().flat_map(sources).collect()
     }
 
     fn task<'t>(&'t self, field: &'t dyn SizeField, limit_check: &'t dyn LimitCheck) -> Task<'t> {
-        let lattice = if self.face.method == Method::Quadtree { Lattice::Tree } else { Lattice::Triangles };
+        let lattice = if self.face.method == Method::Quadtree { NodePlacement::Tree } else { NodePlacement::Triangles };
         Task {
             chart_surface: self.chart,
             field,
@@ -267,35 +241,35 @@ impl Fit<'_> {
     }
 
     /// Without limits on bends: nodes nearer to each other until no side is too long.
-    fn even(&self, field: &mut GradedSize, job: &Job) -> Fitted {
-        for _ in 0..ROUNDS {
+    fn even(&self, field: &mut GradedSize, job: &Job) -> Outcome<Triangulation> {
+        for _ in 0..FIT.max_rounds {
             let same = UniformSize(field.spacing * self.face.size.0);
             let field_now: &dyn SizeField = if field.sources.is_empty() { &same } else { &*field };
             match triangulate(&self.task(field_now, &self.longest), job)? {
-                Ok(made) if !made.keeps => field.spacing *= LESS,
-                other => return Ok(other.map(|made| made.triangulation)),
+                Ok(result) if !result.keeps_limits => field.spacing *= FIT.size_factor,
+                other => return Ok(other.map(|result| result.triangulation)),
             }
         }
-        let plan = self.made.input.plan;
+        let plan = self.face_input.input.plan;
         let (says, at) = (plan.size_origin(), self.outline.p[0]);
         let reached = self.longest.inside;
         Err(MeshFault::NotReached { limit: MeshLimit::Size, says, surface: self.surface.origin(), reached, at }.into())
     }
 
-    /// Lengths by the bends at first, smaller where a triangle's bound says so.
-    fn bent(&self, field: &mut GradedSize, job: &Job) -> Fitted {
-        let floor = self.made.wanted.written;
+    /// Lengths by the bends at first, smaller where a triangle exceeds a limit.
+    fn bent(&self, field: &mut GradedSize, job: &Job) -> Outcome<Triangulation> {
+        let floor = self.face_input.wanted.written;
         let mut worst = (0.0, DVec3::ZERO, MeshLimit::ChordError);
-        let loads = RefCell::new(LimitTable::default());
-        for _ in 0..ROUNDS {
-            let limit_check = Bounded { fit: self, floor, loads: &loads };
+        let ratios = RefCell::new(LimitTable::default());
+        for _ in 0..FIT.max_rounds {
+            let limit_check = Bounded { fit: self, floor, ratios: &ratios };
             let triangulation = match triangulate(&self.task(&*field, &limit_check), job)? {
-                // Below a floor limits may be broken all the same; that is told.
-                Ok(made) if made.keeps && floor == 0.0 => return Ok(Ok(made.triangulation)),
-                Ok(made) => made.triangulation,
+                // Below a floor limits may be exceeded: `lower` reports that.
+                Ok(result) if result.keeps_limits && floor == 0.0 => return Ok(Ok(result.triangulation)),
+                Ok(result) => result.triangulation,
                 Err(trouble) => return Ok(Err(trouble)),
             };
-            worst = self.lower(field, &triangulation, &mut loads.borrow_mut())?;
+            worst = self.lower(field, &triangulation, &mut ratios.borrow_mut())?;
             if worst.0 == 0.0 {
                 return Ok(Ok(triangulation));
             }
@@ -305,38 +279,38 @@ impl Fit<'_> {
             job.go_on()?;
         }
         let (limit, at) = (worst.2, worst.1);
-        let plan = self.made.input.plan;
+        let plan = self.face_input.input.plan;
         let says = plan.limit(limit);
         let reached = if limit == MeshLimit::Size { self.longest.inside } else { worst.0 * says.map_or(0.0, |s| s.0) };
         let says = says.map_or(plan.origin, |s| s.1);
         Err(MeshFault::NotReached { limit, says, surface: self.surface.origin(), reached, at }.into())
     }
 
-    /// Lowers lengths where triangles break a limit; the worst of them, with its place and the limit.
-    fn lower(&self, field: &mut GradedSize, triangulation: &Triangulation, loads: &mut LimitTable) -> Result<(f64, DVec3, MeshLimit)> {
+    /// Lowers lengths where triangles exceed a limit; the worst of them with its place and the limit.
+    fn lower(&self, field: &mut GradedSize, triangulation: &Triangulation, ratios: &mut LimitTable) -> Result<(f64, DVec3, MeshLimit)> {
         let all: Vec<u32> = (0..triangulation.tri.len() as u32).collect();
-        loads.update(self.chart, triangulation, &all, &self.limits);
-        let mut stretched = vec![false; triangulation.tri.len()];
-        self.longest.broken(triangulation, &all).into_iter().for_each(|t| stretched[t as usize] = true);
-        let least = self.made.wanted.written;
+        ratios.update(self.chart, triangulation, &all, &self.limits);
+        let mut is_too_long = vec![false; triangulation.tri.len()];
+        self.longest.broken(triangulation, &all).into_iter().for_each(|t| is_too_long[t as usize] = true);
+        let least = self.face_input.wanted.written;
         let mut worst = (0.0, DVec3::ZERO, MeshLimit::ChordError);
-        for (t, stretched) in stretched.into_iter().enumerate() {
-            let load = loads.of(t as u32);
-            let over = load.worst().max(if stretched { 1.0 / LESS } else { 0.0 });
+        for (t, is_too_long) in is_too_long.into_iter().enumerate() {
+            let ratio = ratios.of(t as u32);
+            let over = ratio.worst().max(if is_too_long { 1.0 / FIT.size_factor } else { 0.0 });
             if over <= 1.0 {
                 continue;
             }
             let c = triangulation.tri[t].map(|n| n as usize);
             let middle = (triangulation.p[c[0]] + triangulation.p[c[1]] + triangulation.p[c[2]]) / 3.0;
-            // A side that is too long where limits have room gets shorter all the same.
-            let factor = if load.chord >= load.angle { load.chord.sqrt() } else { load.angle }.max(1.0);
-            if load.worst() > 1.0 && longest_side(triangulation, t as u32) <= least {
-                return Err(floor_keeps(self.made.input, least / factor, middle));
+            // A side that is too long gets shorter even where the limits are kept.
+            let factor = if ratio.chord >= ratio.angle { ratio.chord.sqrt() } else { ratio.angle }.max(1.0);
+            if ratio.worst() > 1.0 && longest_side(triangulation, t as u32) <= least {
+                return Err(floor_keeps(self.face_input.input, least / factor, middle));
             }
             if over > worst.0 {
-                worst = (over, middle, if load.worst() > 1.0 { load.limit() } else { MeshLimit::Size });
+                worst = (over, middle, if ratio.worst() > 1.0 { ratio.limit() } else { MeshLimit::Size });
             }
-            let smaller = (LESS / factor).max(0.5);
+            let smaller = (FIT.size_factor / factor).max(0.5);
             if let Some(background) = &mut field.background {
                 c.iter().for_each(|n| background.lower(triangulation.xy[*n], triangulation.size[*n] * smaller));
             }
@@ -356,7 +330,7 @@ impl Fit<'_> {
             let why = match source {
                 _ if by_sources.min(bends) < least * field.spacing => Why::Floor,
                 _ if bends < by_sources => Why::Bends,
-                Some(source) if field.sources.items()[source.item as usize].tag == BORDER => Why::Border,
+                Some(source) if field.sources.items()[source.item as usize].tag == BORDER_TAG => Why::Border,
                 Some(source) => Why::Refined(field.sources.items()[source.item as usize].tag as usize),
                 None => Why::Size,
             };

@@ -15,40 +15,35 @@ use crate::mesh::chart::outline::Outline;
 use crate::mesh::data::face_geometry::Free;
 use crate::mesh::data::face_mesh::{FaceMesh, FreeInside};
 use crate::mesh::deviation::edge_length;
-use crate::mesh::quad::maker::{Maker, nodes};
 use crate::mesh::quad::net::Net;
+use crate::mesh::quad::net_fit::{NetFit, nodes};
+use crate::mesh::quad::settings::{NET_FIT, QUAD_FACE, SPACING};
 use crate::mesh::request::decider::Decider;
 use crate::mesh::request::limits::Limits;
 use crate::mesh::request::methods::Elements;
 use crate::mesh::request::sources::Sources;
-use crate::mesh::tri::fit::{Fit, WANTED_TREE, near};
 use crate::mesh::tri::graded_size::{Background, GradedSize};
-use crate::mesh::tri::longest::{LONGEST, Longest};
-use crate::mesh::tri::optimize::{FINEST, OptimizeSettings};
-use crate::mesh::tri::trouble::{Trouble, fault};
-
-/// Distance of the lattice's nodes over the size.
-const SPACING: f64 = 0.85;
-/// Rounds of smoothing.
-const SMOOTH: usize = 8;
-/// Distance of nodes over the side of an equilateral triangle that keeps the limits: half a square has a longer side.
-const HALVED: f64 = 0.7;
+use crate::mesh::tri::longest::Longest;
+use crate::mesh::tri::optimize::OptimizeSettings;
+use crate::mesh::tri::triangle_fit::{FaceFit, near};
+use crate::mesh::tri::trouble::{Outcome, Trouble, fault};
 
 /// Makes the face.
 pub(crate) fn prepare(
-    made: &FaceInput,
+    face_input: &FaceInput,
     face: &Face,
     border: FaceBorder,
-    (chart, outline): (&Chart, &Outline),
+    chart: &Chart,
+    outline: &Outline,
     job: &Job,
 ) -> Result<FaceMesh> {
     let halves = match face.elements {
-        Elements::Quads => halved(made, face, &border, outline),
+        Elements::Quads => halved(face_input, face, &border, outline),
         _ => Some(Halves::whole(outline, &border.ids)),
     };
-    let Some(halves) = halves else { return Err(fault(made, face, &border, Trouble::Border(PointsFault::Same(0, 0)))) };
-    let fitted = fitting(made, face, chart, outline, &halves, job)?;
-    let (net, deciders) = fitted.map_err(|trouble| fault(made, face, &border, of_whole(&halves, trouble)))?;
+    let Some(halves) = halves else { return Err(fault(face_input, face, &border, Trouble::Border(PointsFault::Same(0, 0)))) };
+    let fitted = fitted_net(face_input, face, chart, outline, &halves, job)?;
+    let FittedNet { net, deciders } = fitted.map_err(|trouble| fault(face_input, face, &border, of_whole(&halves, trouble)))?;
     let fixed = net.fixed as usize;
     let mut uv = border.uv;
     uv.extend(net.xy[fixed..].iter().map(|xy| chart.uv(*xy)));
@@ -60,10 +55,10 @@ pub(crate) fn prepare(
             quad => free.quads.push(quad),
         }
     }
-    Ok(prepared(made, face, free, border.ids, FreeInside { points, loops: border.edges, deciders, tally: None }))
+    Ok(prepared(face_input, face, free, border.ids, FreeInside { points, loops: border.edges, deciders, tally: None }))
 }
 
-/// A trouble with nodes of the whole border.
+/// A trouble by nodes of the whole border.
 fn of_whole(halves: &Halves, trouble: Trouble) -> Trouble {
     let node = |n: u32| halves.of.get(n as usize).copied().unwrap_or(0);
     match trouble {
@@ -73,43 +68,41 @@ fn of_whole(halves: &Halves, trouble: Trouble) -> Trouble {
     }
 }
 
-/// A net, and what decided its sizes.
-type Shown = (Net, Vec<Decider>);
+/// A net that keeps the limits.
+struct FittedNet {
+    net: Net,
+    /// What decided its sizes.
+    deciders: Vec<Decider>,
+}
 
-/// Elements that keep the limits, and what decided their sizes.
-fn fitting(
-    made: &FaceInput,
-    face: &Face,
-    chart: &Chart,
-    outline: &Outline,
-    halves: &Halves,
-    job: &Job,
-) -> Result<std::result::Result<Shown, Trouble>> {
-    let surface = &made.input.model.surfaces[face.surface.index()].surface;
-    let limits = Limits::of(made.input);
+/// Elements that keep the limits.
+fn fitted_net(face_input: &FaceInput, face: &Face, chart: &Chart, outline: &Outline, halves: &Halves, job: &Job) -> Outcome<FittedNet> {
+    let surface = &face_input.input.model.surfaces[face.surface.index()].surface;
+    let limits = Limits::of(face_input.input);
     let bent = !surface.is_flat() && (limits.chord.is_some() || limits.angle.is_some());
-    let smooth = made.input.plan.settings.smooth.map_or(SMOOTH, |n| n.0 as usize);
-    let settings = OptimizeSettings { smooth, beyond: 1.0, fine: FINEST, wanted: WANTED_TREE, fair: 1.0, longest: LONGEST / SPACING };
-    let rules = near(made, face, outline);
-    let longest = Longest::new(face.size.0, outline, &rules).graded(outline, made.input.plan.slope());
-    let fit = Fit { made, face, surface, chart, outline, limits, longest, settings };
+    let smoothing_rounds = face_input.input.plan.settings.smooth.map_or(QUAD_FACE.smoothing_rounds, |n| n.0 as usize);
+    let settings = OptimizeSettings { smoothing_rounds, ..QUAD_FACE };
+    let rules = near(face_input, face, outline);
+    let longest = Longest::new(face.size.0, outline, &rules).graded(outline, face_input.input.plan.slope());
+    let fit = FaceFit { face_input, face, surface, chart, outline, limits, longest, settings };
     let background = bent.then(|| fit.background_of_squares());
     let slope = rules.slope() / SPACING;
     let sources = Sources::new([rules.items(), &fit.short_edges(background.as_ref(), SPACING)].concat(), slope);
-    let mut field = GradedSize { sources: &sources, range: (face.size.0, made.wanted.written), spacing: SPACING, background };
-    let maker = Maker { fit: &fit, halves };
-    Ok(maker.fitted(&mut field, job)?.map(|net| {
+    let mut field = GradedSize { sources: &sources, range: (face.size.0, face_input.wanted.written), spacing: SPACING, background };
+    let net_fit = NetFit { fit: &fit, halves };
+    Ok(net_fit.fitted(&mut field, job)?.map(|net| {
         let deciders = fit.deciders(&field, &nodes(&net));
-        (net, deciders)
+        FittedNet { net, deciders }
     }))
 }
 
-impl Fit<'_> {
+impl FaceFit<'_> {
     /// Distances of nodes of squares by the bends of the surface.
     fn background_of_squares(&self) -> Background {
         let whole = self.outline.xy.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), xy| (l.min(*xy), h.max(*xy)));
         let size = self.face.size.0 * SPACING;
-        let wanted = |xy: DVec2| (HALVED * edge_length::wanted(&self.chart.jet(xy), self.limits.chord, self.limits.angle)).min(size);
-        Background::new(self.chart, whole, 1.0 + self.made.input.plan.slope(), &wanted)
+        let wanted =
+            |xy: DVec2| (NET_FIT.square_side * edge_length::wanted(&self.chart.jet(xy), self.limits.chord, self.limits.angle)).min(size);
+        Background::new(self.chart, whole, 1.0 + self.face_input.input.plan.slope(), &wanted)
     }
 }

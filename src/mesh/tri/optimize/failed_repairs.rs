@@ -1,17 +1,17 @@
-//! Changes that did not help: tried again only where something changed.
+//! Repairs that failed: tried again only where something changed.
 
-/// Triangles for which no change helped, and nodes that changed since.
+/// Triangles that could not be repaired, and nodes that changed since.
 #[derive(Clone, Debug, Default)]
-pub struct Tried {
+pub struct FailedRepairs {
     /// Triangles given up so far.
     now: u32,
     /// When each node, or a triangle at it, changed last.
     changed: Vec<u32>,
-    /// When nothing helped each triangle; 0 where that was not so.
+    /// When each triangle was given up; 0 where it was not.
     given_up: Vec<u32>,
 }
 
-impl Tried {
+impl FailedRepairs {
     /// A node moved, or a triangle at it is another one.
     pub fn change(&mut self, node: u32) {
         let n = node as usize;
@@ -21,7 +21,7 @@ impl Tried {
         self.changed[n] = self.now;
     }
 
-    /// Nothing helps a triangle as all is now.
+    /// No change repairs a triangle now.
     pub fn give_up(&mut self, t: u32) {
         let t = t as usize;
         if t >= self.given_up.len() {
@@ -48,14 +48,14 @@ mod tests {
 
     #[test]
     fn what_changed_is_tried_again() {
-        let mut tried = Tried::default();
-        tried.change(3);
-        assert!(tried.is_new([1].into_iter(), tried.since(7)), "never tried");
-        tried.give_up(7);
-        let since = tried.since(7);
-        assert!(!tried.is_new([1, 3].into_iter(), since));
-        tried.change(1);
-        assert!(tried.is_new([3, 1].into_iter(), since));
-        assert!(!tried.is_new([3].into_iter(), since));
+        let mut failed_repairs = FailedRepairs::default();
+        failed_repairs.change(3);
+        assert!(failed_repairs.is_new([1].into_iter(), failed_repairs.since(7)), "never failed_repairs");
+        failed_repairs.give_up(7);
+        let since = failed_repairs.since(7);
+        assert!(!failed_repairs.is_new([1, 3].into_iter(), since));
+        failed_repairs.change(1);
+        assert!(failed_repairs.is_new([3, 1].into_iter(), since));
+        assert!(!failed_repairs.is_new([3].into_iter(), since));
     }
 }
