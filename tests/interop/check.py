@@ -1,17 +1,22 @@
-"""python check.py LOFT WORK DECKS: runs everything and prints "N passed, N failed".
+"""python check.py LOFT WORK DECKS: runs everything, two parts at a time, and prints "N passed, N failed".
 
 LOFT is the program, WORK a scratch folder, DECKS a folder of files from `cargo test decks_for_other_programs`, each family with its
 facts in a JSON file.
 """
+import concurrent.futures
+import contextlib
 import glob
 import json
+import multiprocessing
 import os
 import shutil
 import subprocess
 import sys
+import time
 import traceback
 
 import jsonschema
+from OCP.Message import Message
 
 import assembly_out
 import cad_again
@@ -26,6 +31,7 @@ import step_out
 import surfaces
 
 HERE = os.path.dirname(os.path.abspath(__file__))
+ROOT = os.path.dirname(os.path.dirname(HERE))
 
 
 class Tally:
@@ -121,9 +127,8 @@ def check_reports(tally, loft, root):
     tally.check("report of two models", lambda: jsonschema.validate(json.loads(done.stdout), schema))
 
 
-def main():
-    loft, work, decks = (os.path.abspath(path) for path in sys.argv[1:4])
-    tally = Tally()
+def check_decks(tally, work, decks):
+    """The files of `cargo test decks_for_other_programs` by every program that reads them."""
     for path in sorted(glob.glob(os.path.join(decks, "*.json"))):
         with open(path, encoding="utf-8") as file:
             facts = json.load(file)
@@ -132,22 +137,63 @@ def main():
                 tally.check(f"{os.path.basename(deck)} by {label}", reader)
             if deck.endswith(".inp"):
                 tally.check(f"{os.path.basename(deck)} by CalculiX", lambda deck=deck: solve.takes_every_set(deck, work))
+
+
+def files_and_solvers(tally, loft, work, decks):
+    """Decks and formats by their readers, CalculiX against theory, reports against their schema."""
+    check_decks(tally, work, decks)
     for elements in ["triangles", "quads"]:
         for order in ["1", "2"]:
             check_model(tally, loft, work, elements, order)
             check_orders(tally, loft, work, elements, order)
     for case in solve.CASES + members.CASES:
         tally.check(f"CalculiX: {case.name}", lambda: case.run(lambda *a: run_loft(loft, *a), work))
+    check_reports(tally, loft, ROOT)
+
+
+def measured_surfaces(tally, loft, work, _decks):
+    """Surfaces, roundings and walls by OpenCASCADE."""
     for model in sorted(glob.glob(os.path.join(HERE, "models", "surfaces", "*.loft"))):
         label = f"{os.path.basename(model)} by OpenCASCADE"
         tally.check(label, lambda model=model: surfaces.check(lambda *a: run_loft(loft, *a), model, work))
     tally.check("roundings and walls by OpenCASCADE", lambda: rounded.check(lambda *a: run_loft(loft, *a), work))
-    for module in [cad_in, cad_mesh, cad_again, step_out, assembly_out]:
-        tally.table(*module.table(loft, os.path.join(work, module.__name__)))
-    check_reports(tally, loft, os.path.dirname(os.path.dirname(HERE)))
-    print("".join(f"FAILED {label}\n" for label in tally.wrong), end="")
-    print(f"{tally.passed} passed, {len(tally.wrong)} failed")
-    return 1 if tally.wrong else 0
+
+
+# Parts of the whole that run beside each other, the longest first: a table of rows or a function of a tally.
+PARTS = [cad_mesh, cad_in, step_out, cad_again, files_and_solvers, measured_surfaces, assembly_out]
+
+
+def run_part(k, loft, work, decks):
+    """One of `PARTS` in a process of its own: labels of what is wrong, how much holds, and the file with all that was printed."""
+    part, tally = PARTS[k], Tally()
+    name = part.__name__
+    log = os.path.join(work, f"{name}.log")
+    began = time.monotonic()
+    Message.DefaultMessenger_s().ChangePrinters().Clear()
+    with open(log, "w", encoding="utf-8") as file, contextlib.redirect_stdout(file):
+        if callable(part):
+            part(tally, loft, work, decks)
+        else:
+            tally.table(*part.table(loft, os.path.join(work, name)))
+        print(f"{name}: {time.monotonic() - began:.0f} s")
+    return tally.wrong, tally.passed, log
+
+
+def main():
+    loft, work, decks = (os.path.abspath(path) for path in sys.argv[1:4])
+    wrong, passed = [], 0
+    # A new process for every part: kernels keep settings of their own.
+    context = multiprocessing.get_context("spawn")
+    with concurrent.futures.ProcessPoolExecutor(2, mp_context=context, max_tasks_per_child=1) as pool:
+        for found in [pool.submit(run_part, k, loft, work, decks) for k in range(len(PARTS))]:
+            labels, holds, log = found.result()
+            wrong += labels
+            passed += holds
+            with open(log, encoding="utf-8") as file:
+                print(file.read(), end="", flush=True)
+    print("".join(f"FAILED {label}\n" for label in wrong), end="")
+    print(f"{passed} passed, {len(wrong)} failed")
+    return 1 if wrong else 0
 
 
 if __name__ == "__main__":
