@@ -1,4 +1,4 @@
-//! Keeps the house: floors import only downward, crates stay behind their doors, files stay readable.
+//! The structure of the sources: floors import only from lower floors, a crate is named in few files, files and functions stay short.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -67,7 +67,7 @@ const ROOMS: &[(&str, &[&str])] = &[
     ("lang", &["diag", "words", "syntax", "values", "eval", "incremental", "declare", "assist", "run", "fmt"]),
 ];
 
-/// A crate and the places that may name it.
+/// A crate and the files that may name it.
 const DOORS: &[(&str, &[&str])] = &[
     ("spade", &["src/base/triangulate"]),
     ("rayon", &["src/base/par.rs"]),
@@ -92,13 +92,7 @@ const DOORS: &[(&str, &[&str])] = &[
 /// What floors 0 to 7 never touch: the disk, the environment, the clock, threads of their own.
 const OUTSIDE: &[&str] = &["std::fs", "std::env", "std::time", "println!", "eprintln!"];
 
-/// Lines a floor may have, tests included; raising one is a change of its own with the reason. Each floor holds the words
-/// of its faults; `base` holds how they are said, what all writers of text share and how content becomes keys and bytes, `session` the folder of kept
-/// results, where the files of a run come from, what goldens hold of every thing and which bodies a mesh keeps apart, `library` the names at the root of the crate, `draw` an alphabet, `mesh` proofs of its limits, what it takes over, how places of
-/// borders are followed, what a map is foreseen to give and the check of every mesh,
-/// `io` solids and assemblies in and out, and types that formats share in files of their own,
-/// `model` a table for integrals over many cells, contacts and pieces of faces that touch, sides of shells and shared edges, `cli` what the line being edited tells, `surface` how surfaces meet curves, each other and themselves, and nets made ready for many, and `lang` the grammar over tokens and its tree, the evaluator, its
-/// memory between runs, all words with their documentation, the forms of other languages it knows, and the formatter.
+/// Lines a floor may have, tests included; a higher number is a change of its own, with the reason.
 const CEILINGS: &[(&str, usize)] = &[
     ("base", 4_400),
     ("geometry", 6_000),
@@ -115,6 +109,22 @@ const CEILINGS: &[(&str, usize)] = &[
 ];
 
 const LONGEST_FILE: usize = 800;
+
+const LONGEST_FUNCTION: usize = 80;
+
+/// Functions that are longer than [`LONGEST_FUNCTION`]: one that is shorter now has to be taken out, and none may be added.
+const LONG_FUNCTIONS: &[(&str, &str)] = &[
+    ("src/base/fault/values.rs", "describe"),
+    ("src/mesh/request/fault.rs", "describe_faces"),
+    ("src/mesh/request/fault.rs", "describe_rules"),
+    ("src/model/fault.rs", "describe"),
+    ("src/model/measure_flat.rs", "flat_integral"),
+    ("src/model/measure_trimmed.rs", "trimmed_integral"),
+    ("src/network/net_fault.rs", "describe"),
+    ("src/surface/faults/cut.rs", "describe"),
+    ("src/surface/faults/surface.rs", "describe"),
+    ("src/surface/faults/sweep.rs", "describe"),
+];
 
 struct Source {
     path: String,
@@ -268,6 +278,51 @@ fn files_and_floors_stay_small() {
     report("files and floors have ceilings", found);
 }
 
+/// The functions of a file without those of its tests: line, name and number of lines.
+fn functions(text: &str) -> Vec<(usize, &str, usize)> {
+    let end = text.find("#[cfg(test)]\nmod tests").unwrap_or(text.len());
+    let lines: Vec<&str> = text[..end].lines().collect();
+    let mut found = Vec::new();
+    for (start, line) in lines.iter().enumerate() {
+        let code = line.trim_start();
+        let indent = &line[..line.len() - code.len()];
+        let mut words = code.split(' ').skip_while(|word| word.starts_with("pub") || matches!(*word, "const" | "super)" | "self)"));
+        if words.next() != Some("fn") {
+            continue;
+        }
+        let name = words.next().unwrap_or_default().split(['(', '<']).next().unwrap_or_default();
+        let closes = |line: &&str| line.strip_prefix(indent).is_some_and(|rest| rest.starts_with('}'));
+        let declared = code.ends_with(';') || code.ends_with('}');
+        if let Some(length) = lines[start..].iter().position(closes).filter(|_| !declared) {
+            found.push((start + 1, name, length + 1));
+        }
+    }
+    found
+}
+
+#[test]
+fn functions_stay_small() {
+    let (sources, mut found, mut long) = (sources(), Vec::new(), Vec::new());
+    for source in &sources {
+        for (line, name, length) in functions(&source.text).into_iter().filter(|f| f.2 > LONGEST_FUNCTION) {
+            long.push((source.path.as_str(), name));
+            if !LONG_FUNCTIONS.contains(&(source.path.as_str(), name)) {
+                found.push(format!("{}:{line}: {name} has {length} lines, more than {LONGEST_FUNCTION}", source.path));
+            }
+        }
+    }
+    let shorter = LONG_FUNCTIONS.iter().filter(|known| !long.contains(known));
+    found.extend(shorter.map(|(path, name)| format!("{path}: {name} is no longer long, take it out of the list")));
+    report("functions have a limit", found);
+}
+
+#[test]
+fn functions_are_measured() {
+    let text = "impl A {\n    pub(crate) const fn a(\n        b: u8,\n    ) -> u8 {\n        b\n    }\n    fn c();\n    fn d() {}\n}\n\
+                pub fn e<T>() {\n    if true {\n    }\n}\n#[cfg(test)]\nmod tests {\n    fn f() {\n    }\n}\n";
+    assert_eq!(functions(text), [(2, "a", 5), (10, "e", 4)]);
+}
+
 /// A small literal with an exponent is a tolerance, and tolerances live in one file.
 #[test]
 fn tolerances_live_in_one_file() {
@@ -358,7 +413,6 @@ fn goldens_hold_no_failed_checks() {
     assert!(failed.is_empty(), "{}", failed.join("\n"));
 }
 
-/// Where the papers and books stand that are cited by a key in square brackets.
 /// What notes and guides call a file by is the end of the path of one.
 #[test]
 fn documents_name_files_that_exist() {
@@ -380,6 +434,7 @@ fn documents_name_files_that_exist() {
     report("documents name files that exist", found);
 }
 
+/// Where the papers and books stand that are cited by a key in square brackets.
 const SOURCES: &str = "docs/notes/sources.md";
 
 /// A key of citation (names and a year) with a line for it, and a line for nothing that is not cited.
