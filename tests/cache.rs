@@ -13,9 +13,7 @@ use lofting::session::json::report_text;
 use lofting::session::kept::Kept;
 use lofting::session::run::{Again, Outcome, Task, run, run_again};
 
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
+use crate::support::long::{root, sample, scripts};
 
 fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("cache-{name}"));
@@ -52,23 +50,6 @@ mesh ruled_twice of roof {
 export plain to \"plain.vtu\"
 export second to \"second.inp\"
 ";
-
-/// All scripts of the examples and of the project's goldens.
-fn scripts() -> Vec<PathBuf> {
-    let (mut open, mut found) = (vec![root().join("examples"), root().join("tests/golden")], Vec::new());
-    while let Some(folder) = open.pop() {
-        for entry in fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                open.push(path);
-            } else if path.extension().is_some_and(|e| e == "loft") {
-                found.push(path);
-            }
-        }
-    }
-    found.sort();
-    found
-}
 
 /// All that a run says and writes, and how many results came from the cache.
 struct Found {
@@ -194,10 +175,12 @@ fn one_script((script, text): &(PathBuf, String), edits: bool, dice: &mut Dice) 
     (without.meshes, warm.from_cache)
 }
 
-/// The project's small models go through all of it; examples, some of which are large, are not edited.
+/// Scripts of the project (a quarter of them in a short run) and one with a mesh of every shape. Examples, some of which are large, are
+/// not edited.
 #[test]
 fn results_are_the_same_cold_warm_edited_and_damaged() {
-    let mut all: Vec<(PathBuf, String)> = scripts().into_iter().map(|p| (p.clone(), fs::read_to_string(p).unwrap())).collect();
+    let chosen = sample(scripts(&["examples", "tests/golden"]), 3).into_iter().map(|path| root().join(path));
+    let mut all: Vec<(PathBuf, String)> = chosen.map(|p| (p.clone(), fs::read_to_string(p).unwrap())).collect();
     all.push((root().join("tests/golden/shapes.loft"), SHAPES.to_owned()));
     let part = |parity: usize| {
         let mut dice = Dice(7 + parity as u64);

@@ -1,6 +1,6 @@
 //! Random edits of the examples: a number that changes the model fails its golden, what changes nothing does not.
 //!
-//! A few dozen edits in `cargo test`; `LOFT_EDITS` says how many of each kind. Examples with
+//! 22 edits of each kind, 100 in a long run; `LOFT_EDITS` says how many. Examples with
 //! large meshes are left out: nearly all of their time goes into those.
 
 use std::fs;
@@ -19,6 +19,7 @@ use lofting::session::kept::Kept;
 use lofting::session::run::{Task, run_seen};
 use lofting::surface::Side;
 
+use crate::support::long::count;
 use crate::support::random::Random;
 
 /// Share of the diagonal of the model's box by which values may differ that are one: the centroid of a curve moves less than the
@@ -368,7 +369,7 @@ fn idle(text: &str, random: &mut Random) -> (&'static str, String) {
 
 /// How many edits are tried in all.
 fn wanted() -> usize {
-    std::env::var("LOFT_EDITS").ok().and_then(|n| n.parse().ok()).unwrap_or(22)
+    count("LOFT_EDITS", 22, 100)
 }
 
 /// The edits of each example, which are made from a seed of its own: `each` gives what is wrong with one, or nothing.

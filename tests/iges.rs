@@ -21,6 +21,7 @@ use lofting::model::measure;
 use lofting::surface::{Domain, Surface};
 use serde_json::Value as Json;
 
+use crate::support::long::count;
 use crate::support::mutate::{Random, mutated};
 
 const OPTIONS: Options = Options { model: 1.0, unit: "mm", file: None, origin: Origin::NONE };
@@ -285,10 +286,10 @@ fn the_rest_of_a_damaged_file_is_usable() {
     assert!(part.warnings.iter().any(|w| w.what.contains("entity 128 at D3") && w.line > 0), "{:?}", part.warnings);
 }
 
-/// 10 000 with `LOFT_MUTATIONS=10000`.
+/// 400 changed files, 10 000 in a long run; `LOFT_MUTATIONS` says how many.
 #[test]
 fn mutated_files_never_break_the_reader() {
-    let cases = std::env::var("LOFT_MUTATIONS").ok().and_then(|n| n.parse().ok()).unwrap_or(400);
+    let cases = count("LOFT_MUTATIONS", 400, 10_000);
     let mut files: Vec<Vec<u8>> = facts().into_iter().map(|f| f.1).collect();
     files.extend(entities::all().into_iter().map(|(_, text)| text.into_bytes()));
     let mut random = Random(0x1005_5EED);

@@ -11,6 +11,8 @@ use lofting::session::kept::Kept;
 use lofting::session::run::{Again, Outcome, Task, run, run_again};
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 
+use crate::support::long::count;
+
 /// What a run took over: results, and of these the faces of meshes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Reused {
@@ -198,8 +200,8 @@ fn edited(text: &str, kind: u8, place: usize, amount: u32) -> String {
 fn random_edits_of_the_examples_give_what_a_fresh_run_gives() {
     let folder = Folder::new("edits");
     const EXAMPLES: &[&str] = &["porch.loft", "barrel_vault.loft", "tank.loft", "canopy.loft", "wing.loft", "greenhouse.loft", ""];
-    // Sequences of edits in all; `.ci/run` asks for 200.
-    let wanted: u32 = std::env::var("LOFT_EDITS").ok().and_then(|n| n.parse().ok()).unwrap_or(12);
+    // Sequences of edits in all.
+    let wanted = count("LOFT_EDITS", 12, 200) as u32;
     let cases = wanted.div_ceil(EXAMPLES.len() as u32);
     let sequences = std::cell::Cell::new(0);
     for name in EXAMPLES {

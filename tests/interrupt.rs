@@ -9,6 +9,8 @@ use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
+use crate::support::long::count;
+
 const SCRIPT: &str = "units m
 curve south = line((0, 0, 0), (4, 0, 0))
 curve north = arc((0, 3, 0), (4, 3, 0), through: (2, 3, 1))
@@ -89,9 +91,9 @@ fn ctrl_c_ends_with_130_and_leaves_nothing_half() {
     assert!(stopped > 0, "no run was caught");
 }
 
-/// How often each kind of run is killed; `.ci/run` asks for more.
+/// How often each kind of run is killed.
 fn kills() -> usize {
-    std::env::var("LOFT_KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(5)
+    count("LOFT_KILLS", 5, 100)
 }
 
 /// Starts a command and kills it at a moment chosen by `dice` within 1.2 times what a whole run takes.

@@ -8,6 +8,8 @@ use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 
+use crate::support::long::count;
+
 /// How long a server may take on a loaded machine.
 const PATIENCE: Duration = Duration::from_secs(60);
 
@@ -595,10 +597,10 @@ const TYPED: [&str; 24] = [
 ];
 
 /// Random edits in bursts, as fast as they can be sent; when the text rests, what is said of it is what a run from
-/// nothing says. `LOFT_EDITS` sets how many.
+/// nothing says. 300 edits, 10 000 in a long run; `LOFT_EDITS` says how many.
 #[test]
 fn random_edits_leave_nothing_stale() {
-    let edits = std::env::var("LOFT_EDITS").ok().and_then(|n| n.parse().ok()).unwrap_or(300);
+    let edits = count("LOFT_EDITS", 300, 10_000);
     let (mut editor, mut dice, uri) = (Editor::start(), Dice(7), "untitled:edited.loft");
     editor.open(uri, MODEL);
     let (mut text, mut version, mut sound) = (MODEL.to_owned(), 1, 0);

@@ -9,26 +9,13 @@ use lofting::session::disk::{Disk, Outputs};
 use lofting::session::guard::guarded;
 
 use crate::support::invariants;
+use crate::support::long::{root, scripts};
 use crate::support::script;
-
-fn models(folder: &Path, found: &mut Vec<PathBuf>) {
-    for entry in std::fs::read_dir(folder).unwrap().flatten() {
-        let path = entry.path();
-        if path.is_dir() {
-            models(&path, found);
-        } else if path.extension().is_some_and(|e| e == "loft") {
-            found.push(path);
-        }
-    }
-}
 
 #[test]
 fn every_mesh_of_every_model_is_sound() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let mut paths = Vec::new();
-    ["examples", "tests/golden"].iter().for_each(|folder| models(&root.join(folder), &mut paths));
+    let mut paths: Vec<PathBuf> = scripts(&["examples", "tests/golden"]).into_iter().map(|path| root().join(path)).collect();
     paths.retain(|p| !p.parent().is_some_and(|p| p.ends_with("broken")));
-    paths.sort();
     let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join("invariants");
     std::fs::create_dir_all(&out).unwrap();
     let (mut found, mut tally) = (Vec::new(), [0; 5]);

@@ -21,6 +21,7 @@ use lofting::mesh::chart::outline::{Outline, in_line};
 use lofting::mesh::chart::parametric_surface::{ParametricSurface, UniformSize};
 use lofting::mesh::tri::build::{NodePlacement, Task, triangulate};
 
+use crate::support::long::count;
 use crate::support::mutate::{Random, mutated};
 use crate::support::outlines::{CARE, Waves, add_loop, sound};
 
@@ -46,7 +47,7 @@ fn corpus(folders: &[&str], endings: &[&str]) -> Vec<(String, Vec<u8>)> {
 /// Looks at each file as it is and at so many changed ones; `look` tells whether something was read, and panics for what may not be.
 /// At least one changed file in `share` must leave something, or the changes test nothing.
 fn mutate(name: &str, files: &[(String, Vec<u8>)], (seed, few, share): (u64, usize, usize), look: impl Fn(&[u8]) -> bool) {
-    let cases = std::env::var("LOFT_MUTATIONS").ok().and_then(|n| n.parse().ok()).unwrap_or(few);
+    let cases = count("LOFT_MUTATIONS", few, 10_000);
     let attempt = |what: &str, bytes: &[u8]| {
         let start = Instant::now();
         let read = catch_unwind(AssertUnwindSafe(|| look(bytes)));

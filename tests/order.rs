@@ -1,6 +1,6 @@
 //! The order of declarations decides nothing: the examples, shuffled, write the same files and report the same.
 //!
-//! Two shuffles of each example in `cargo test`; `LOFT_SHUFFLES` says how many, and `.ci/run` asks for ten.
+//! Two shuffles of each example, ten in a long run; `LOFT_SHUFFLES` says how many.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -10,6 +10,8 @@ use lofting::session::disk::{Disk, Outputs};
 use lofting::session::guard::guarded;
 use lofting::session::json::report_text;
 use lofting::session::run::{Task, run};
+
+use crate::support::long::count;
 
 /// Pseudo-random numbers (SplitMix64 [Steele, Lea & Flood 2014]), the same in every run.
 struct Random(u64);
@@ -114,7 +116,7 @@ fn examples() -> Vec<PathBuf> {
 
 #[test]
 fn shuffled_examples_write_and_report_the_same() {
-    let shuffles: usize = std::env::var("LOFT_SHUFFLES").ok().and_then(|n| n.parse().ok()).unwrap_or(2);
+    let shuffles = count("LOFT_SHUFFLES", 2, 10);
     let mut wrong = Vec::new();
     for path in examples() {
         let name = path.file_stem().unwrap().to_string_lossy().into_owned();

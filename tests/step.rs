@@ -18,6 +18,7 @@ use lofting::io::step::open;
 use lofting::model::measure;
 use serde_json::Value as Json;
 
+use crate::support::long::count;
 use crate::support::mutate::{Random, mutated};
 
 const OPTIONS: Options = Options { model: 1.0, unit: "mm", file: None, origin: Origin::NONE };
@@ -104,10 +105,10 @@ fn text_may_be_laid_out_in_any_way() {
     }
 }
 
-/// 10 000 with `LOFT_MUTATIONS=10000`.
+/// 300 changed files, 10 000 in a long run; `LOFT_MUTATIONS` says how many.
 #[test]
 fn mutated_files_never_break_the_reader() {
-    let cases = std::env::var("LOFT_MUTATIONS").ok().and_then(|n| n.parse().ok()).unwrap_or(300);
+    let cases = count("LOFT_MUTATIONS", 300, 10_000);
     let mut files: Vec<Vec<u8>> = entities::all().into_iter().map(|(_, text)| text.into_bytes()).collect();
     files.push(std::fs::read(folder("step-plate-cylinders/io1-ug-214.stp")).unwrap());
     let mut random = Random(0x0103_0321);

@@ -1,7 +1,7 @@
 //! Random changes of triangulations: flips, patches made anew, nodes put in and taken out, changes taken back and made again.
 //! After each the triangulation states its conditions, covers what it covered and has the border that it had.
 //!
-//! `PROPTEST_CASES` makes the runs longer.
+//! Runs are longer in a long run; `PROPTEST_CASES` says how many cases.
 
 use std::collections::BTreeSet;
 

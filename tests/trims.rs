@@ -1,6 +1,6 @@
 //! Random trimmed faces: a valid mesh or a reason, never a panic and never half a face.
 //!
-//! `PROPTEST_CASES` makes the runs longer.
+//! Runs are longer in a long run; `PROPTEST_CASES` says how many cases.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -26,6 +26,7 @@ use proptest::test_runner::{Config, RngAlgorithm, TestCaseResult, TestRng, TestR
 
 use crate::support::invariants;
 use crate::support::outlines::{CARE, Waves, add_loop, sound, star};
+use crate::support::random;
 use crate::support::script;
 
 /// Small at the origin.
@@ -43,8 +44,7 @@ fn check<S: Strategy>(cases: u32, strategy: &S, test: impl Fn(S::Value) -> TestC
 
 /// The same for what takes longer: one in so many of the cases that are asked for.
 fn check_one_in<S: Strategy>(share: u32, cases: u32, strategy: &S, test: impl Fn(S::Value) -> TestCaseResult) {
-    let asked = std::env::var("PROPTEST_CASES").ok().and_then(|n| n.parse::<u32>().ok());
-    let cases = asked.map_or(cases, |n| n.div_ceil(share));
+    let cases = random::cases((cases * share) as usize).div_ceil(share as usize) as u32;
     let config = Config { cases, max_shrink_iters: 200, failure_persistence: None, ..Config::default() };
     let mut runner = TestRunner::new_with_rng(config, TestRng::from_seed(RngAlgorithm::ChaCha, &[23; 32]));
     runner.run(strategy, test).unwrap_or_else(|error| panic!("{error}"));

@@ -2,7 +2,7 @@
 //! face, borders on their curves, the chord error kept, closed where the skin is.
 //!
 //! Places are taken from the mesh alone and measured against the surfaces by nearest points, not by the (u, v) of the mesher.
-//! Some triangles of a mesh are looked at; all of them with `LOFT_INVARIANTS=all`, for `.ci/run`.
+//! Some triangles of a mesh are looked at; all of them in a long run, or with `LOFT_INVARIANTS=all`.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -14,6 +14,8 @@ use lofting::mesh::data::mesh::FaceRange;
 use lofting::session::run::Outcome;
 use lofting::surface::{Domain, Nearest, Side, Surface, SurfaceKind};
 
+use crate::support::long::is_long;
+
 /// Distance of nodes of the border from their curves, as a share of the size of the model.
 const ON: f64 = 1e-9;
 /// Triangles and nodes of a mesh that are measured.
@@ -21,7 +23,7 @@ const SOME: usize = 48;
 
 /// Every so many of them, so that few are left.
 fn some<T: Clone>(all: &[T]) -> Vec<T> {
-    let step = if std::env::var("LOFT_INVARIANTS").is_ok() { 1 } else { all.len().div_ceil(SOME).max(1) };
+    let step = if is_long() || std::env::var("LOFT_INVARIANTS").is_ok() { 1 } else { all.len().div_ceil(SOME).max(1) };
     all.iter().step_by(step).cloned().collect()
 }
 

@@ -2,6 +2,7 @@
 
 pub mod borders;
 pub mod invariants;
+pub mod long;
 pub mod mutate;
 pub mod networks;
 pub mod outlines;

@@ -1,5 +1,7 @@
 //! Random numbers and texts of tests, the same in every run.
 
+use super::long::count;
+
 /// Pseudo-random numbers (SplitMix64), the same in every run.
 #[derive(Clone, Debug)]
 pub struct Random(pub u64);
@@ -23,7 +25,7 @@ impl Random {
     }
 }
 
-/// How many random cases a property is tried with: what `PROPTEST_CASES` says, else `least`.
+/// How many random cases a property is tried with: what `PROPTEST_CASES` says, else `least`, and 1000 in a long run.
 pub fn cases(least: usize) -> usize {
-    std::env::var("PROPTEST_CASES").ok().and_then(|n| n.parse().ok()).unwrap_or(least)
+    count("PROPTEST_CASES", least, 1000)
 }
