@@ -28,7 +28,7 @@ pub type Result<T> = std::result::Result<T, Fault>;
 #[derive(Debug)]
 pub enum Fault {
     /// A fault of a family.
-    Of(Box<dyn Family>),
+    Family(Box<dyn Family>),
     /// Stopped from outside (Ctrl-C).
     Interrupted,
 }
@@ -203,7 +203,7 @@ impl Fault {
     /// The fault as one of a family; `None` where it is of another one.
     pub fn of<T: Family>(&self) -> Option<&T> {
         match self {
-            Self::Of(fault) => (fault.as_ref() as &dyn Any).downcast_ref(),
+            Self::Family(fault) => (fault.as_ref() as &dyn Any).downcast_ref(),
             Self::Interrupted => None,
         }
     }
@@ -211,7 +211,7 @@ impl Fault {
     /// Code, sentence, labels and help.
     pub fn describe(&self, say: &dyn Say) -> Report {
         match self {
-            Self::Of(fault) => fault.describe(say),
+            Self::Family(fault) => fault.describe(say),
             Self::Interrupted => Report::new("E999", "interrupted"),
         }
     }
@@ -224,7 +224,7 @@ impl Fault {
     /// Whether both are the same variant of one family; found without describing either.
     pub fn same_kind(&self, other: &Self) -> bool {
         match (self, other) {
-            (Self::Of(a), Self::Of(b)) => a.is_like(b.as_ref()),
+            (Self::Family(a), Self::Family(b)) => a.is_like(b.as_ref()),
             (Self::Interrupted, Self::Interrupted) => true,
             _ => false,
         }
@@ -234,7 +234,7 @@ impl Fault {
 impl Clone for Fault {
     fn clone(&self) -> Self {
         match self {
-            Self::Of(fault) => Self::Of(fault.copied()),
+            Self::Family(fault) => Self::Family(fault.copied()),
             Self::Interrupted => Self::Interrupted,
         }
     }
@@ -243,7 +243,7 @@ impl Clone for Fault {
 impl PartialEq for Fault {
     fn eq(&self, other: &Self) -> bool {
         match (self, other) {
-            (Self::Of(a), Self::Of(b)) => a.equals(b.as_ref()),
+            (Self::Family(a), Self::Family(b)) => a.equals(b.as_ref()),
             (Self::Interrupted, Self::Interrupted) => true,
             _ => false,
         }
@@ -252,7 +252,7 @@ impl PartialEq for Fault {
 
 impl<T: Family> From<T> for Fault {
     fn from(fault: T) -> Self {
-        Self::Of(Box::new(fault))
+        Self::Family(Box::new(fault))
     }
 }
 
