@@ -628,8 +628,9 @@ mod mistakes {
     }
 
     fn check<T: std::fmt::Debug>(result: Result<T, Fault>, code: &str, words: &[&str]) {
-        let report = result.unwrap_err().describe(&Plain);
-        assert_eq!(report.code.0, code, "{report:?}");
+        let fault = result.unwrap_err();
+        let report = fault.describe(&Plain);
+        assert_eq!(fault.code().0, code, "{report:?}");
         let all = format!("{} {:?} {:?}", report.message, report.help, report.labels);
         for word in words {
             assert!(all.contains(word), "no {word} in {all}");

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{Describe, Report, Say};
+use crate::base::fault::{Code, Describe, Report, Say};
 use crate::base::origin::Origin;
 
 /// How two faces touch that share no edge there.
@@ -160,33 +160,42 @@ pub enum ModelFault {
 }
 
 impl Describe for ModelFault {
+    fn code(&self) -> Code {
+        Code(match self {
+            Self::ShellOpen { .. } => "N615",
+            Self::ShellGlued { .. } => "N513",
+            Self::ImprintOverlap { .. } => "E666",
+            Self::FacesTouch { .. } => "W667",
+            Self::ShellNotOrientable { .. } => "E616",
+            Self::ShellNonManifold { .. } => "E617",
+            Self::NotAdjacent { .. } => "E618",
+            Self::ShellNotClosed { .. } => "E656",
+            Self::EdgeMismatch { .. } => "E711",
+            Self::EdgeTooShort { .. } | Self::FaceTooThin { .. } => "N712",
+        })
+    }
+
     fn describe(&self, say: &dyn Say) -> Report {
         use ModelFault as F;
         match self {
-            F::ShellOpen { shell, edges, length, at } => Report::new(
-                "N615",
-                format!(
-                    "{} is open: {edges} free edge{}, {} long in total; the longest passes through {}",
-                    say.quoted(*shell, "the shell"),
-                    if *edges == 1 { "" } else { "s" },
-                    say.length(*length),
-                    say.point(*at)
-                ),
-            )
+            F::ShellOpen { shell, edges, length, at } => Report::new(format!(
+                "{} is open: {edges} free edge{}, {} long in total; the longest passes through {}",
+                say.quoted(*shell, "the shell"),
+                if *edges == 1 { "" } else { "s" },
+                say.length(*length),
+                say.point(*at)
+            ))
             .at(*shell, "not closed"),
-            F::ShellGlued { shell, says, a, b, gap, at } => Report::new(
-                "N513",
-                format!(
-                    "edges of {} were glued over gaps up to {}, the widest between {} and {} at {}",
-                    say.quoted(*shell, "the shell"),
-                    say.length(*gap),
-                    say.quoted(*a, "one face"),
-                    say.quoted(*b, "its neighbour"),
-                    say.point(*at)
-                ),
-            )
+            F::ShellGlued { shell, says, a, b, gap, at } => Report::new(format!(
+                "edges of {} were glued over gaps up to {}, the widest between {} and {} at {}",
+                say.quoted(*shell, "the shell"),
+                say.length(*gap),
+                say.quoted(*a, "one face"),
+                say.quoted(*b, "its neighbour"),
+                say.point(*at)
+            ))
             .at(says.unwrap_or(*shell), if says.is_some() { "asked for here" } else { "its faces have separate borders" }),
-            F::ImprintOverlap { imprint, a, b, names, at } => Report::new("E666", {
+            F::ImprintOverlap { imprint, a, b, names, at } => Report::new({
                 let (one, other) = (called(&names.0, "one face"), called(&names.1, "another face"));
                 format!("{one} and {other} overlap at {}: the common region would be meshed twice", say.point(*at))
             })
@@ -225,7 +234,7 @@ impl Describe for ModelFault {
                         "and this one",
                     ),
                 };
-                Report::new("W667", format!("{text} {}", say.point(*at)))
+                Report::new(format!("{text} {}", say.point(*at)))
                     .at(*a, first)
                     .at(*b, second)
                     .at(*within, "they are not joined here")
@@ -247,58 +256,51 @@ impl Describe for ModelFault {
                         },
                     })
             }
-            F::ShellNotOrientable { shell, a, b, at } => Report::new(
-                "E616",
-                format!(
-                    "{} has only one side: {} and {} cannot be oriented alike at {}",
-                    say.quoted(*shell, "the shell"),
-                    say.quoted(*a, "one surface"),
-                    say.quoted(*b, "another one"),
-                    say.point(*at)
-                ),
-            )
+            F::ShellNotOrientable { shell, a, b, at } => Report::new(format!(
+                "{} has only one side: {} and {} cannot be oriented alike at {}",
+                say.quoted(*shell, "the shell"),
+                say.quoted(*a, "one surface"),
+                say.quoted(*b, "another one"),
+                say.point(*at)
+            ))
             .at(*shell, "has no outside")
             .help("split the ring of surfaces into two shells"),
             F::ShellNonManifold { shell, users, at } => {
-                let mut report = Report::new(
-                    "E617",
-                    format!("{} faces of {} share the edge at {}", users.len(), say.quoted(*shell, "the shell"), say.point(*at)),
-                )
+                let mut report = Report::new(format!(
+                    "{} faces of {} share the edge at {}",
+                    users.len(),
+                    say.quoted(*shell, "the shell"),
+                    say.point(*at)
+                ))
                 .at(*shell, "an edge of a shell joins at most two faces");
                 for user in users {
                     report = report.at(*user, "uses the edge");
                 }
                 report.help("make two shells")
             }
-            F::NotAdjacent { a, b, gap, at } => Report::new(
-                "E618",
-                format!(
-                    "{} and {} share no edge; their borders are {} apart at {}",
-                    say.quoted(*a, "one face"),
-                    say.quoted(*b, "another one"),
-                    say.length(*gap),
-                    say.point(*at)
-                ),
-            )
+            F::NotAdjacent { a, b, gap, at } => Report::new(format!(
+                "{} and {} share no edge; their borders are {} apart at {}",
+                say.quoted(*a, "one face"),
+                say.quoted(*b, "another one"),
+                say.length(*gap),
+                say.point(*at)
+            ))
             .at(*a, "this face")
             .at(*b, "and this one"),
             F::ShellNotClosed { shell, wanted, free } => {
                 if free.is_empty() {
                     let shell_name = say.quoted(*shell, "the shell");
                     let text = format!("the {wanted} of {shell_name} needs a closed shell, but more than two of its faces share an edge");
-                    return Report::new("E656", text).at(*shell, "branches").help("make a shell of only the faces that enclose it");
+                    return Report::new(text).at(*shell, "branches").help("make a shell of only the faces that enclose it");
                 }
                 let length: f64 = free.iter().map(|edge| edge.2).sum();
-                let mut report = Report::new(
-                    "E656",
-                    format!(
-                        "the {wanted} of {} needs a closed shell, but it has {} free edge{}, {} long in total",
-                        say.quoted(*shell, "an open shell"),
-                        free.len(),
-                        if free.len() == 1 { "" } else { "s" },
-                        say.length(length)
-                    ),
-                )
+                let mut report = Report::new(format!(
+                    "the {wanted} of {} needs a closed shell, but it has {} free edge{}, {} long in total",
+                    say.quoted(*shell, "an open shell"),
+                    free.len(),
+                    if free.len() == 1 { "" } else { "s" },
+                    say.length(length)
+                ))
                 .at(*shell, "open");
                 for (surface, at, length) in free.iter().take(4) {
                     report = report.note(format!(
@@ -310,44 +312,35 @@ impl Describe for ModelFault {
                 }
                 report.help("add the surfaces that close it to the shell")
             }
-            F::EdgeMismatch { a, b, gap, at, stated } => Report::new(
-                "E711",
-                format!(
-                    "the borders of {} and {} are {} apart at {}",
-                    say.quoted(*a, "one face"),
-                    say.quoted(*b, "its neighbour"),
-                    say.length(*gap),
-                    say.point(*at)
-                ),
-            )
+            F::EdgeMismatch { a, b, gap, at, stated } => Report::new(format!(
+                "the borders of {} and {} are {} apart at {}",
+                say.quoted(*a, "one face"),
+                say.quoted(*b, "its neighbour"),
+                say.length(*gap),
+                say.point(*at)
+            ))
             .at(stated.1, format!("edges within {} are glued", say.length(stated.0)))
             .at(*a, "this border")
             .at(*b, "and this one")
             .help("set a larger `snap`, or build both on the same curve"),
-            F::EdgeTooShort { of, length, at, more } => Report::new(
-                "N712",
-                format!(
-                    "an edge of {} only {} long at {} became a corner{}",
-                    say.quoted(*of, "a face"),
-                    say.length(*length),
-                    say.point(*at),
-                    match more {
-                        0 => String::new(),
-                        1 => ", and a shorter one".to_owned(),
-                        _ => format!(", and {more} shorter ones"),
-                    }
-                ),
-            )
+            F::EdgeTooShort { of, length, at, more } => Report::new(format!(
+                "an edge of {} only {} long at {} became a corner{}",
+                say.quoted(*of, "a face"),
+                say.length(*length),
+                say.point(*at),
+                match more {
+                    0 => String::new(),
+                    1 => ", and a shorter one".to_owned(),
+                    _ => format!(", and {more} shorter ones"),
+                }
+            ))
             .at(*of, "has two corners that almost coincide"),
-            F::FaceTooThin { surface, at, more } => Report::new(
-                "N712",
-                format!(
-                    "{} is thinner than the gluing distance and became an edge at {}{}",
-                    say.quoted(*surface, "a face"),
-                    say.point(*at),
-                    if *more == 0 { String::new() } else { format!(", as {more} others did") }
-                ),
-            )
+            F::FaceTooThin { surface, at, more } => Report::new(format!(
+                "{} is thinner than the gluing distance and became an edge at {}{}",
+                say.quoted(*surface, "a face"),
+                say.point(*at),
+                if *more == 0 { String::new() } else { format!(", as {more} others did") }
+            ))
             .at(*surface, "has no interior left"),
         }
     }

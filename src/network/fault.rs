@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::base::fault::quantities::{round_above, round_down, round_up, typed};
-use crate::base::fault::{Describe, Edit, Report, Say, Subject};
+use crate::base::fault::{Code, Describe, Edit, Report, Say, Subject};
 use crate::base::origin::Origin;
 use crate::base::text::decimals;
 use crate::base::tolerance::SNAP_SHARE;
@@ -214,6 +214,33 @@ impl CurveEnd {
 }
 
 impl Describe for NetworkFault {
+    fn code(&self) -> Code {
+        Code(match self {
+            Self::EndsMiss { .. } => "E501",
+            Self::BoundaryOpen { .. } => "E502",
+            Self::ChainBroken { .. } => "E503",
+            Self::ChainRepeats { .. } => "E504",
+            Self::ChainAmbiguous { .. } => "E505",
+            Self::ClusterAmbiguous { .. } => "E506",
+            Self::LoopThin { .. } => "E611",
+            Self::NoMeeting { .. } | Self::PointOff { .. } => "E507",
+            Self::SeveralMeetings { .. } => "E508",
+            Self::SharesRun { .. } => "E509",
+            Self::InUse { .. } => "E510",
+            Self::SnapFixed { .. } => "E511",
+            Self::SharedRun { .. } => "N512",
+            Self::Snapped { end, to, length, .. } => {
+                if moves_far(end.at.distance(*to), *length) {
+                    "W223"
+                } else {
+                    "N513"
+                }
+            }
+            Self::NearMiss { .. } => "W514",
+            Self::NoLength { .. } => "E401",
+        })
+    }
+
     fn describe(&self, say: &dyn Say) -> Report {
         match self {
             Self::EndsMiss { a, b, near, tolerance } => ends_miss(a, b, (*near, *tolerance), say),
@@ -222,15 +249,12 @@ impl Describe for NetworkFault {
             Self::ChainRepeats { a, b, stretch } => chain_repeats(*a, *b, *stretch, say),
             Self::ChainAmbiguous { of, at, candidates } => chain_ambiguous(*of, *at, candidates, say),
             Self::ClusterAmbiguous { points, count, diameter, tolerance, smaller } => {
-                let mut report = Report::new(
-                    "E506",
-                    format!(
-                        "{count} points near {} are pairwise closer than {} but spread over {}: it is ambiguous which of them are one node",
-                        say.point(points.first().map_or(DVec3::ZERO, |p| p.0)),
-                        say.length(*tolerance),
-                        say.length(*diameter)
-                    ),
-                );
+                let mut report = Report::new(format!(
+                    "{count} points near {} are pairwise closer than {} but spread over {}: it is ambiguous which of them are one node",
+                    say.point(points.first().map_or(DVec3::ZERO, |p| p.0)),
+                    say.length(*tolerance),
+                    say.length(*diameter)
+                ));
                 for (point, of) in points {
                     report = report.at(*of, format!("through {}", say.point(*point)));
                 }
@@ -239,17 +263,14 @@ impl Describe for NetworkFault {
             }
             Self::LoopThin { a, b, at, apart, tolerance } => {
                 let smaller = typed(say, round_down(0.5 * apart.min(*tolerance)));
-                Report::new(
-                    "E611",
-                    format!(
-                        "the boundary comes too close to itself: {} and {} are {} apart at {}, within the tolerance of {}",
-                        say.quoted(*a, "one curve"),
-                        if a == b { "itself".to_owned() } else { say.quoted(*b, "another one") },
-                        say.length(*apart),
-                        say.point(*at),
-                        say.length(*tolerance)
-                    ),
-                )
+                Report::new(format!(
+                    "the boundary comes too close to itself: {} and {} are {} apart at {}, within the tolerance of {}",
+                    say.quoted(*a, "one curve"),
+                    if a == b { "itself".to_owned() } else { say.quoted(*b, "another one") },
+                    say.length(*apart),
+                    say.point(*at),
+                    say.length(*tolerance)
+                ))
                 .at(*a, "this curve")
                 .at(*b, "runs beside this one")
                 .help(format!("`tolerance {smaller}` keeps them apart"))
@@ -259,7 +280,7 @@ impl Describe for NetworkFault {
             Self::PointOff { of, point, nearest, tolerance } => {
                 let ((given, found), curve) = (say.pair(*point, *nearest), say.quoted(*of, "the curve"));
                 let away = say.length(point.distance(*nearest));
-                Report::new("E507", format!("the point {given} is not on {curve}: the nearest point of the curve, {found}, is {away} away"))
+                Report::new(format!("the point {given} is not on {curve}: the nearest point of the curve, {found}, is {away} away"))
                     .at(*of, "this curve")
                     .note(tolerance_note(*tolerance, say))
             }
@@ -271,30 +292,32 @@ impl Describe for NetworkFault {
                 let ((from, to), long) = (say.pair(run.0, run.1), say.length(*length));
                 let (one, another) = (say.quoted(*owner, "one curve"), say.quoted(*other, "another"));
                 let first = say.quoted(*owner, "the first");
-                Report::new("N512", format!("{one} and {another} share a run of {long} from {from} to {to}; it belongs to {first}"))
+                Report::new(format!("{one} and {another} share a run of {long} from {from} to {to}; it belongs to {first}"))
                     .at(*other, "runs over it")
                     .at(*owner, "owns it")
             }
             Self::Snapped { end, to, length, asked } => snapped(end, (*to, *length), *asked, say),
             Self::NearMiss { end, other, nearest, other_end, tolerance } => near_miss(end, (*other, *nearest, *other_end), *tolerance, say),
-            Self::NoLength { of, at, length, tolerance } => Report::new(
-                "E401",
-                format!(
-                    "{} is a run of length {} at {}, which is a point within the tolerance of {}",
-                    say.quoted(*of, "this"),
-                    say.length(*length),
-                    say.point(*at),
-                    say.length(*tolerance)
-                ),
-            )
+            Self::NoLength { of, at, length, tolerance } => Report::new(format!(
+                "{} is a run of length {} at {}, which is a point within the tolerance of {}",
+                say.quoted(*of, "this"),
+                say.length(*length),
+                say.point(*at),
+                say.length(*tolerance)
+            ))
             .at(*of, "has no length"),
         }
     }
 }
 
+/// Whether a move changes a curve of this length.
+fn moves_far(moved: f64, length: f64) -> bool {
+    moved > SNAP_SHARE * length
+}
+
 fn snapped(end: &CurveEnd, (to, length): (DVec3, f64), asked: Origin, say: &dyn Say) -> Report {
     let moved = end.at.distance(to);
-    let far = moved > SNAP_SHARE * length;
+    let far = moves_far(moved, length);
     let (from, onto) = say.pair(end.at, to);
     let words = format!(
         "the {} of {} moved by {}{} from {from} to {onto}",
@@ -303,7 +326,7 @@ fn snapped(end: &CurveEnd, (to, length): (DVec3, f64), asked: Origin, say: &dyn 
         say.length(moved),
         if far { format!(", {} % of its length,", rounded(100.0 * moved / length)) } else { String::new() }
     );
-    let report = Report::new(if far { "W223" } else { "N513" }, words).at(end.of, end.verb());
+    let report = Report::new(words).at(end.of, end.verb());
     if !far {
         return report;
     }
@@ -330,7 +353,7 @@ fn snap_fixed([a, b]: [&CurveEnd; 2], (snap, asked): (f64, Origin), settled: Opt
         typed(say, snap)
     );
     let below = typed(say, gap);
-    let report = Report::new("E511", words)
+    let report = Report::new(words)
         .at(a.of, a.verb())
         .at(b.of, b.verb())
         .at(asked, "ends closer than this are joined")
@@ -353,7 +376,7 @@ fn ends_miss(a: &CurveEnd, b: &CurveEnd, (near, tolerance): (bool, f64), say: &d
     let wanted = typed(say, round_above(gap));
     let (one, other) = (say.quoted(a.of, "one curve"), say.quoted(b.of, "another"));
     let (here, there) = say.pair(a.at, b.at);
-    let report = Report::new("E501", format!("{one} and {other} miss each other by {} at {here}", say.length(gap)))
+    let report = Report::new(format!("{one} and {other} miss each other by {} at {here}", say.length(gap)))
         .at(a.of, a.verb())
         .at(b.of, b.verb())
         .label(Subject::Call, format!("needs a closed boundary; the model's tolerance is {}", say.length(tolerance)))
@@ -372,7 +395,7 @@ fn boundary_open(a: &CurveEnd, b: &CurveEnd, tolerance: f64, say: &dyn Say) -> R
     let gap = a.at.distance(b.at);
     let (here, there) = say.pair(a.at, b.at);
     let (one, other) = (say.quoted(a.of, "one curve"), say.quoted(b.of, "another"));
-    Report::new("E502", format!("the boundary does not close: {one} {} at {here}, {other} {} at {there}", side(a), side(b)))
+    Report::new(format!("the boundary does not close: {one} {} at {here}, {other} {} at {there}", side(a), side(b)))
         .at(a.of, a.verb())
         .at(b.of, b.verb())
         .help("add a curve that joins these two points")
@@ -383,11 +406,10 @@ fn chain_broken(a: &CurveEnd, b: &CurveEnd, (reversed_fits, snaps): (bool, bool)
     let gap = a.at.distance(b.at);
     let (here, there) = say.pair(a.at, b.at);
     let (one, next) = (say.quoted(a.of, "one part"), say.quoted(b.of, "the next"));
-    let report =
-        Report::new("E503", format!("the chain breaks: {one} ends at {here}, {next} starts at {there}, {} apart", say.length(gap)))
-            .at(a.of, "ends here")
-            .at(b.of, "starts elsewhere")
-            .note(tolerance_note(tolerance, say));
+    let report = Report::new(format!("the chain breaks: {one} ends at {here}, {next} starts at {there}, {} apart", say.length(gap)))
+        .at(a.of, "ends here")
+        .at(b.of, "starts elsewhere")
+        .note(tolerance_note(tolerance, say));
     let name = say.name(b.of);
     if let (true, Some((put, from, to))) = (reversed_fits, turned_run(&name)) {
         report.help(format!("`{put}` runs from {from} to {to}")).edit(Subject::Call, Edit::Instead { put, of: name })
@@ -417,7 +439,7 @@ fn turned_run(typed: &str) -> Option<(String, String, String)> {
 
 fn chain_repeats(a: Origin, b: Origin, stretch: (DVec3, DVec3), say: &dyn Say) -> Report {
     let (from, to) = say.pair(stretch.0, stretch.1);
-    Report::new("E504", format!("the chain runs twice over the stretch from {from} to {to}"))
+    Report::new(format!("the chain runs twice over the stretch from {from} to {to}"))
         .at(a, "runs over it first")
         .at(b, "runs over it again")
         .help("end the first part where the second one begins")
@@ -425,11 +447,9 @@ fn chain_repeats(a: Origin, b: Origin, stretch: (DVec3, DVec3), say: &dyn Say) -
 
 fn chain_ambiguous(of: Origin, at: DVec3, candidates: &[Origin], say: &dyn Say) -> Report {
     let names: Vec<String> = candidates.iter().map(|&c| say.quoted(c, "a curve")).collect();
-    let mut report = Report::new(
-        "E505",
-        format!("after {} at {} more than one curve fits: {}", say.quoted(of, "a curve"), say.point(at), names.join(", ")),
-    )
-    .at(of, "several curves start at its end");
+    let mut report =
+        Report::new(format!("after {} at {} more than one curve fits: {}", say.quoted(of, "a curve"), say.point(at), names.join(", ")))
+            .at(of, "several curves start at its end");
     for &candidate in candidates {
         report = report.at(candidate, "could follow");
     }
@@ -441,7 +461,7 @@ fn no_meeting(a: (Origin, DVec3), b: (Origin, DVec3), (near, tolerance): (bool, 
     let wider = if near { format!("; {} would let them meet", typed(say, round_up(gap))) } else { String::new() };
     let (one, other) = (say.quoted(a.0, "one curve"), say.quoted(b.0, "the other"));
     let (here, there) = say.pair(a.1, b.1);
-    Report::new("E507", format!("{one} and {other} do not meet: they come closest at {here} and {there}, {} apart", say.length(gap)))
+    Report::new(format!("{one} and {other} do not meet: they come closest at {here} and {there}, {} apart", say.length(gap)))
         .at(a.0, "this curve")
         .at(b.0, "and this one")
         .note(format!("{}{wider}", tolerance_note(tolerance, say)))
@@ -454,16 +474,13 @@ fn several_meetings(a: Origin, b: Origin, candidates: &[(DVec3, f64)], say: &dyn
     let list: Vec<String> = say.points(&shown).iter().zip(candidates).map(one).collect();
     let more = if candidates.len() > SHOWN { format!(" and {} more", candidates.len() - SHOWN) } else { String::new() };
     let (name_a, name_b) = (say.name(a), say.name(b));
-    let report = Report::new(
-        "E508",
-        format!(
-            "{} and {} meet {} times: at {}{more}",
-            say.quoted(a, "one curve"),
-            say.quoted(b, "the other"),
-            candidates.len(),
-            list.join(", ")
-        ),
-    )
+    let report = Report::new(format!(
+        "{} and {} meet {} times: at {}{more}",
+        say.quoted(a, "one curve"),
+        say.quoted(b, "the other"),
+        candidates.len(),
+        list.join(", ")
+    ))
     .at(a, "this curve")
     .at(b, "and this one");
     if name_a.is_empty() || name_b.is_empty() {
@@ -482,10 +499,12 @@ fn shares_run(a: Origin, b: Origin, runs: &[(DVec3, DVec3)], say: &dyn Say) -> R
         format!("from {from} to {to}")
     };
     let list: Vec<String> = runs.iter().map(run).collect();
-    Report::new(
-        "E509",
-        format!("{} and {} share a run {}, not a point", say.quoted(a, "one curve"), say.quoted(b, "the other"), list.join(" and ")),
-    )
+    Report::new(format!(
+        "{} and {} share a run {}, not a point",
+        say.quoted(a, "one curve"),
+        say.quoted(b, "the other"),
+        list.join(" and ")
+    ))
     .at(a, "this curve")
     .at(b, "and this one")
     .help("`meet(a, b)` lists the ends of the run")
@@ -494,7 +513,7 @@ fn shares_run(a: Origin, b: Origin, runs: &[(DVec3, DVec3)], say: &dyn Say) -> R
 fn in_use(of: Origin, users: &[Origin], say: &dyn Say) -> Report {
     let names: Vec<String> = users.iter().map(|&u| say.quoted(u, "an unnamed entity")).collect();
     let name = say.name(of);
-    let mut report = Report::new("E510", format!("{} is used by {}", say.quoted(of, "this"), names.join(", "))).at(of, "to be removed");
+    let mut report = Report::new(format!("{} is used by {}", say.quoted(of, "this"), names.join(", "))).at(of, "to be removed");
     for &user in users {
         report = report.at(user, "uses it");
     }
@@ -506,18 +525,15 @@ fn near_miss(end: &CurveEnd, other: (Origin, DVec3, bool), tolerance: f64, say: 
     let gap = end.at.distance(nearest);
     let wanted = typed(say, round_above(gap));
     let (here, there) = say.pair(end.at, nearest);
-    let report = Report::new(
-        "W514",
-        format!(
-            "the {} of {} at {} misses {}{} by {}",
-            if end.last { "end" } else { "start" },
-            say.quoted(end.of, "a curve"),
-            here,
-            if is_end { "the end of " } else { "" },
-            say.quoted(of, "another"),
-            say.length(gap)
-        ),
-    )
+    let report = Report::new(format!(
+        "the {} of {} at {} misses {}{} by {}",
+        if end.last { "end" } else { "start" },
+        say.quoted(end.of, "a curve"),
+        here,
+        if is_end { "the end of " } else { "" },
+        say.quoted(of, "another"),
+        say.length(gap)
+    ))
     .at(end.of, end.verb())
     .at(of, format!("passes {there}"))
     .note(tolerance_note(tolerance, say));
@@ -551,8 +567,9 @@ mod tests {
     #[test]
     fn a_miss_names_gap_place_tolerance_and_a_snap_that_passes() {
         let end = |last, x| CurveEnd { of: Origin::NONE, last, at: DVec3::new(x, 0.0, 0.0) };
-        let report = NetworkFault::EndsMiss { a: end(true, 0.0), b: end(false, 0.3), near: true, tolerance: 0.001 }.describe(&Plain);
-        assert_eq!(report.code.0, "E501");
+        let fault = NetworkFault::EndsMiss { a: end(true, 0.0), b: end(false, 0.3), near: true, tolerance: 0.001 };
+        let report = fault.describe(&Plain);
+        assert_eq!(fault.code().0, "E501");
         assert_eq!(report.message, "one curve and another miss each other by 0.300000 at (0.000000, 0.000000, 0.000000)");
         assert_eq!(report.help.as_deref(), Some("end both at one point, or declare `snap 0.5`"));
         assert!(report.labels.iter().any(|(_, text)| text.contains("tolerance is 0.001")));

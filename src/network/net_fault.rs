@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::base::fault::quantities::{round_above, typed};
-use crate::base::fault::{Describe, Report, Say};
+use crate::base::fault::{Code, Describe, Report, Say};
 use crate::base::origin::Origin;
 
 /// What can go wrong with a net of two families. Lengths and points are in model units.
@@ -109,21 +109,27 @@ pub enum NetFault {
 }
 
 impl Describe for NetFault {
+    fn code(&self) -> Code {
+        Code(match self {
+            Self::Incomplete { .. } => "E641",
+            Self::Cross { .. } | Self::OneSection { .. } => "E642",
+            Self::Gap { .. } | Self::Smoothed { .. } | Self::AsNet { .. } => "N677",
+            Self::Order { .. } => "E643",
+        })
+    }
+
     fn describe(&self, say: &dyn Say) -> Report {
         let family = |guide: bool| if guide { "a guide" } else { "a profile" };
         match self {
             Self::Incomplete { profile, guide, gap, at, found, wanted, near, tolerance } => {
-                let report = Report::new(
-                    "E641",
-                    format!(
-                        "{} and {} do not meet: they are {} apart at {}, and the tolerance is {}",
-                        say.quoted(*profile, "a profile"),
-                        say.quoted(*guide, "a guide"),
-                        say.length(*gap),
-                        say.point(*at),
-                        say.length(*tolerance)
-                    ),
-                )
+                let report = Report::new(format!(
+                    "{} and {} do not meet: they are {} apart at {}, and the tolerance is {}",
+                    say.quoted(*profile, "a profile"),
+                    say.quoted(*guide, "a guide"),
+                    say.length(*gap),
+                    say.point(*at),
+                    say.length(*tolerance)
+                ))
                 .at(*profile, "this profile")
                 .at(*guide, "misses this guide")
                 .note(format!("{found} of {wanted} crossings of the net were found"));
@@ -133,26 +139,22 @@ impl Describe for NetFault {
                     report.help("let every profile cross every guide, or leave one of these two out")
                 }
             }
-            Self::Cross { a, b, guides, at } => Report::new(
-                "E642",
-                format!("{} and {} meet at {}", say.quoted(*a, family(*guides)), say.quoted(*b, "another one"), say.point(*at)),
-            )
-            .at(*a, if *guides { "this guide" } else { "this profile" })
-            .at(*b, "meets this one")
-            .help(if *guides {
-                "guides may end in one pole and share nothing else"
-            } else {
-                "profiles share no point; curves that end in one pole are guides"
-            }),
-            Self::OneSection { a, b, at, closing } => Report::new(
-                "E642",
-                format!(
-                    "{} and {} coincide within the tolerance, at {}",
-                    say.quoted(*a, "a section"),
-                    say.quoted(*b, "the next one"),
-                    say.point(*at)
-                ),
-            )
+            Self::Cross { a, b, guides, at } => {
+                Report::new(format!("{} and {} meet at {}", say.quoted(*a, family(*guides)), say.quoted(*b, "another one"), say.point(*at)))
+                    .at(*a, if *guides { "this guide" } else { "this profile" })
+                    .at(*b, "meets this one")
+                    .help(if *guides {
+                        "guides may end in one pole and share nothing else"
+                    } else {
+                        "profiles share no point; curves that end in one pole are guides"
+                    })
+            }
+            Self::OneSection { a, b, at, closing } => Report::new(format!(
+                "{} and {} coincide within the tolerance, at {}",
+                say.quoted(*a, "a section"),
+                say.quoted(*b, "the next one"),
+                say.point(*at)
+            ))
             .at(*a, if *closing { "the first section" } else { "this section" })
             .at(*b, if *closing { "the last one is the same" } else { "is the same as this one" })
             .help(if *closing {
@@ -160,56 +162,47 @@ impl Describe for NetFault {
             } else {
                 "leave one of them out"
             }),
-            Self::Gap { surface, profile, guide, gap, at, pairs } => Report::new(
-                "N677",
-                format!(
-                    "{} and {} miss each other by {} at {}; {} lies between them",
-                    say.quoted(*profile, "a profile"),
-                    say.quoted(*guide, "a guide"),
-                    say.length(*gap),
-                    say.point(*at),
-                    say.quoted(*surface, "the surface")
-                ),
-            )
+            Self::Gap { surface, profile, guide, gap, at, pairs } => Report::new(format!(
+                "{} and {} miss each other by {} at {}; {} lies between them",
+                say.quoted(*profile, "a profile"),
+                say.quoted(*guide, "a guide"),
+                say.length(*gap),
+                say.point(*at),
+                say.quoted(*surface, "the surface")
+            ))
             .at(*profile, "this profile")
             .at(*guide, "misses this guide")
             .note(match pairs {
                 1 => "all others meet".to_owned(),
                 n => format!("{n} pairs of the net miss each other, this one most"),
             }),
-            Self::Smoothed { surface, section, off, at, spans, given } => Report::new(
-                "N677",
-                format!(
-                    "{} deviates from {} by {} at {}, the most of all sections",
-                    say.quoted(*surface, "the surface"),
-                    say.quoted(*section, "a section"),
-                    say.length(*off),
-                    say.point(*at)
-                ),
-            )
+            Self::Smoothed { surface, section, off, at, spans, given } => Report::new(format!(
+                "{} deviates from {} by {} at {}, the most of all sections",
+                say.quoted(*surface, "the surface"),
+                say.quoted(*section, "a section"),
+                say.length(*off),
+                say.point(*at)
+            ))
             .at(*section, "largest deviation")
             .note(match spans {
                 1 => format!("one span across; through all sections there would be {given}"),
                 n => format!("{n} spans across; through all sections there would be {given}"),
             }),
-            Self::AsNet { net, surface, off, proved } => Report::new("N677", {
+            Self::AsNet { net, surface, off, proved } => Report::new({
                 let (net, surface, off) = (say.quoted(*net, "the net"), say.quoted(*surface, "its surface"), say.length(*off));
                 let bound = if *proved { "nowhere" } else { "at no sampled place" };
                 format!("{net} is {bound} farther than {off} from {surface}")
             })
             .at(*net, "a B-spline approximation"),
-            Self::Order { curve, guide, a, b, first, second } => Report::new(
-                "E643",
-                format!(
-                    "{} meets the {} in another order than the others: {} at {}, {} at {}",
-                    say.quoted(*curve, family(*guide)),
-                    if *guide { "profiles" } else { "guides" },
-                    say.quoted(*a, "the first"),
-                    say.point(*first),
-                    say.quoted(*b, "the next"),
-                    say.point(*second)
-                ),
-            )
+            Self::Order { curve, guide, a, b, first, second } => Report::new(format!(
+                "{} meets the {} in another order than the others: {} at {}, {} at {}",
+                say.quoted(*curve, family(*guide)),
+                if *guide { "profiles" } else { "guides" },
+                say.quoted(*a, "the first"),
+                say.point(*first),
+                say.quoted(*b, "the next"),
+                say.point(*second)
+            ))
             .at(*curve, "meets them in another order")
             .at(*a, "should come before")
             .at(*b, "this one")

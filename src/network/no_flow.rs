@@ -76,7 +76,7 @@ pub enum NoFlow {
 
 /// What the report says of curves that span no flow.
 pub(crate) fn describe(curves: &[Origin], why: &NoFlow, say: &dyn Say) -> Report {
-    let report = |text: String| Report::new("E601", text);
+    let report = |text: String| Report::new(text);
     match why {
         NoFlow::TooFewCurves { given } => report(format!("{given} curve{} cannot span a surface", if *given == 1 { "" } else { "s" }))
             .label(Subject::Call, "needs four borders, or three, or two with common ends")

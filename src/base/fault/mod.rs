@@ -1,8 +1,8 @@
 //! Everything that can go wrong or deserves a word, with measurements instead of text.
 //!
 //! The kernel returns a [`Fault`]; it knows points, gaps and [`Origin`]s but no source text, names or units.
-//! Each family, declared on the floor it speaks of, states its code, sentence, labels and help in [`Describe::describe`], asking a [`Say`] for names and
-//! quantities; `lang::diag` is the one place that turns the result into a diagnostic under the script.
+//! Each family, declared on the floor it speaks of, has one table of its codes, [`Describe::code`], and states sentence, labels and help in
+//! [`Describe::describe`], asking a [`Say`] for names and quantities; `lang::diag` is the one place that turns the result into a diagnostic under the script.
 //! Warnings and notes are faults as well: the letter of their code tells, and they travel in a `Vec<Fault>` beside
 //! the value.
 
@@ -33,7 +33,7 @@ pub enum Fault {
     Interrupted,
 }
 
-/// A code of `diagnostics.md`, for example `E501`; the letter is the severity.
+/// A code of `docs/codes/`, for example `E501`; the letter is the severity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Code(pub &'static str);
 
@@ -72,11 +72,9 @@ pub enum Subject {
     Call,
 }
 
-/// A fault in words, before its subjects are found in the script.
+/// A fault in words, before its subjects are found in the script. Its code is that of the fault.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
-    /// Code of `diagnostics.md`.
-    pub code: Code,
     /// One sentence without final dot.
     pub message: String,
     /// Culprits, the first one foremost, each with a few words.
@@ -91,8 +89,8 @@ pub struct Report {
 
 impl Report {
     /// A report with a sentence and nothing else yet.
-    pub fn new(code: &'static str, message: impl Into<String>) -> Self {
-        Self { code: Code(code), message: message.into(), labels: Vec::new(), help: None, notes: Vec::new(), edits: Vec::new() }
+    pub fn new(message: impl Into<String>) -> Self {
+        Self { message: message.into(), labels: Vec::new(), help: None, notes: Vec::new(), edits: Vec::new() }
     }
 
     /// Adds a label.
@@ -171,7 +169,9 @@ impl Say for Plain {
 
 /// A family of faults that can say what happened.
 pub trait Describe {
-    /// Code, sentence, labels and help.
+    /// Code of `docs/codes/`.
+    fn code(&self) -> Code;
+    /// Sentence, labels and help.
     fn describe(&self, say: &dyn Say) -> Report;
 }
 
@@ -208,17 +208,20 @@ impl Fault {
         }
     }
 
-    /// Code, sentence, labels and help.
+    /// Sentence, labels and help.
     pub fn describe(&self, say: &dyn Say) -> Report {
         match self {
             Self::Family(fault) => fault.describe(say),
-            Self::Interrupted => Report::new("E999", "interrupted"),
+            Self::Interrupted => Report::new("interrupted"),
         }
     }
 
-    /// Code of `diagnostics.md`.
+    /// Code of `docs/codes/`; found without describing the fault.
     pub fn code(&self) -> Code {
-        self.describe(&Plain).code
+        match self {
+            Self::Family(fault) => fault.code(),
+            Self::Interrupted => Code("E999"),
+        }
     }
 
     /// Whether both are the same variant of one family; found without describing either.

@@ -1,6 +1,6 @@
 //! Family 8: files that cannot be read or written, and what a format could not hold.
 
-use crate::base::fault::{Describe, Edit, Report, Say, Subject};
+use crate::base::fault::{Code, Describe, Edit, Report, Say, Subject};
 use crate::base::origin::Origin;
 use crate::base::text::article;
 
@@ -211,6 +211,28 @@ pub enum FileFault {
 }
 
 impl Describe for FileFault {
+    fn code(&self) -> Code {
+        Code(match self {
+            Self::CannotRead { .. } => "E801",
+            Self::Outside { .. } => "E802",
+            Self::Malformed { .. } => "E803",
+            Self::NoSuchFormat { .. } => "E804",
+            Self::LaterFormat { .. } => "E230",
+            Self::Unsupported { .. } => "E805",
+            Self::LeftOut { .. } => "W806",
+            Self::Renamed { .. } => "W807",
+            Self::SameFile { .. } => "E812",
+            Self::OverInput { .. } => "E813",
+            Self::CannotWrite { .. } => "E808",
+            Self::TooMuchWork { .. } => "E217",
+            Self::ImportCycle { .. } => "E809",
+            Self::Repaired { .. } => "W810",
+            Self::Unusable { .. } => "W726",
+            Self::Incomplete { .. } => "E904",
+            Self::TooLarge { .. } => "E811",
+        })
+    }
+
     fn describe(&self, _: &dyn Say) -> Report {
         match self {
             Self::CannotRead { .. }
@@ -220,7 +242,7 @@ impl Describe for FileFault {
             | Self::Unusable { .. }
             | Self::TooLarge { .. } => self.describe_reading(),
             Self::ImportCycle { of, ring } => {
-                Report::new("E809", format!("modules import each other: {}", ring.join(" → "))).at(*of, "closes the ring")
+                Report::new(format!("modules import each other: {}", ring.join(" → "))).at(*of, "closes the ring")
             }
             _ => self.describe_writing(),
         }
@@ -235,7 +257,7 @@ impl FileFault {
                     "" => (format!("cannot read \"{path}\""), "looked in the folder of this script"),
                     why => (format!("cannot read \"{path}\": {why}"), "named here"),
                 };
-                let report = Report::new("E801", message).at(*of, label);
+                let report = Report::new(message).at(*of, label);
                 let report = match similar.as_slice() {
                     [] => report,
                     [one] => report.help(format!("there is {} \"{one}\"", article(one))),
@@ -245,18 +267,14 @@ impl FileFault {
                 let named = similar.iter().map(|name| Edit::Instead { of: format!("\"{path}\""), put: format!("\"{folder}{name}\"") });
                 named.fold(report, |report, edit| report.edit(Subject::Entity(*of), edit))
             }
-            Self::Outside { of, path } => Report::new("E802", format!("\"{path}\" lies outside the allowed folders"))
+            Self::Outside { of, path } => Report::new(format!("\"{path}\" lies outside the allowed folders"))
                 .at(*of, "only the script's folder and folders below it are allowed, links resolved")
                 .help("move the file there, or run with `--allow PATH`"),
-            Self::Malformed { of, path, at } => {
-                Report::new("E803", format!("\"{path}\"{}: {}", at.place(), at.what)).at(*of, "imported here")
-            }
-            Self::Repaired { of, path, at } => {
-                Report::new("W810", format!("\"{path}\"{}: {}", at.place(), at.what)).at(*of, "imported here")
-            }
+            Self::Malformed { of, path, at } => Report::new(format!("\"{path}\"{}: {}", at.place(), at.what)).at(*of, "imported here"),
+            Self::Repaired { of, path, at } => Report::new(format!("\"{path}\"{}: {}", at.place(), at.what)).at(*of, "imported here"),
             Self::Unusable { of, path, total, faces, share, whole } => unusable(*of, path, *total, faces, *share, *whole),
             Self::TooLarge { of, path, bytes, limit } => {
-                Report::new("E811", format!("\"{path}\" has {}, more than the limit of {}", mebibytes(*bytes), mebibytes(*limit)))
+                Report::new(format!("\"{path}\" has {}, more than the limit of {}", mebibytes(*bytes), mebibytes(*limit)))
                     .at(*of, "named here")
             }
             _ => self.describe_writing(),
@@ -271,46 +289,42 @@ impl FileFault {
                     Some(ending) => format!("no format has the ending `.{ending}`"),
                     None => format!("\"{path}\" has no ending to choose a format by"),
                 };
-                Report::new("E804", message).at(*of, "named here").help(format!("use one of .{}", known.join(" .")))
+                Report::new(message).at(*of, "named here").help(format!("use one of .{}", known.join(" .")))
             }
             Self::LaterFormat { of, format } => {
-                Report::new("E230", format!("the format {format} is not in this version")).at(*of, "asked for here")
+                Report::new(format!("the format {format} is not in this version")).at(*of, "asked for here")
             }
             Self::Unsupported { of, what, help, edits } => {
-                let report = Report::new("E805", what.clone()).at(*of, "asked for here");
+                let report = Report::new(what.clone()).at(*of, "asked for here");
                 let report = edits.iter().fold(report, |report, edit| report.edit(Subject::Entity(*of), edit.clone()));
                 match help {
                     Some(help) => report.help(help.clone()),
                     None => report,
                 }
             }
-            Self::LeftOut { of, path, what } => {
-                Report::new("W806", format!("\"{path}\" cannot hold {what}")).at(*of, "left out of this file")
-            }
+            Self::LeftOut { of, path, what } => Report::new(format!("\"{path}\" cannot hold {what}")).at(*of, "left out of this file"),
             Self::Renamed { of, path, names } => {
                 let called = names.iter().map(|(from, to)| format!("`{from}` is called `{to}`")).collect::<Vec<_>>().join(", ");
-                Report::new("W807", format!("{called} in \"{path}\"")).at(*of, "written here")
+                Report::new(format!("{called} in \"{path}\"")).at(*of, "written here")
             }
             Self::SameFile { outputs, members } => same_file(outputs, *members),
-            Self::OverInput { of, path, what } => Report::new("E813", format!("\"{path}\" is {what}, which this would replace"))
+            Self::OverInput { of, path, what } => Report::new(format!("\"{path}\" is {what}, which this would replace"))
                 .at(*of, "written here")
                 .help("give the output another name"),
-            Self::TooMuchWork { of, path } => Report::new("E217", format!("\"{path}\" exceeds its work limit"))
+            Self::TooMuchWork { of, path } => Report::new(format!("\"{path}\" exceeds its work limit"))
                 .at(*of, "to be written here")
                 .help("write fewer or simpler things to one file; look for points that are far off by mistake"),
             Self::Incomplete { of, output, path, part, missing } => {
                 let path = format!("\"{path}\"");
                 let edit = Edit::Instead { put: format!("{path} {{ incomplete: true }}"), of: path };
                 let faces = if *missing == 1 { "a face".to_owned() } else { format!("{missing} faces") };
-                Report::new("E904", format!("this would be written with holes: `{part}` lacks {faces} that could not be used"))
+                Report::new(format!("this would be written with holes: `{part}` lacks {faces} that could not be used"))
                     .at(*of, "incomplete")
                     .help("`incomplete: true` in the export writes it anyway")
                     .edit(Subject::Entity(*output), edit)
             }
-            Self::CannotWrite { of, path, why } => {
-                Report::new("E808", format!("cannot write \"{path}\": {why}")).at(*of, "to be written here")
-            }
-            _ => Report::new("E801", "cannot read a file"),
+            Self::CannotWrite { of, path, why } => Report::new(format!("cannot write \"{path}\": {why}")).at(*of, "to be written here"),
+            _ => Report::new("cannot read a file"),
         }
     }
 }
@@ -326,7 +340,7 @@ fn unusable(of: Origin, path: &str, total: usize, faces: &[Malformed], share: Op
         Some(Share::AtLeast(share)) => format!("at least {:.0} % of the area, by their loops", 100.0 * share),
         None => "their share of the area is unknown".to_owned(),
     };
-    let report = Report::new("W726", format!("{count} of \"{path}\" could not be used ({share})")).at(of, "imported here");
+    let report = Report::new(format!("{count} of \"{path}\" could not be used ({share})")).at(of, "imported here");
     let listed = if whole { faces.len() } else { faces.len().min(FACES_LISTED) };
     let report = faces.iter().take(listed).fold(report, |r, face| r.note(format!("line {}: {}", face.line, face.what)));
     match faces.len() - listed {
@@ -341,7 +355,7 @@ fn same_file(outputs: &[(Origin, String)], members: Option<usize>) -> Report {
     if let Some(members) = members {
         let message = format!("{members} outputs of this family are one file, \"{first}\"");
         let place = outputs.first().map_or(Origin::NONE, |(of, _)| *of);
-        return Report::new("E812", message)
+        return Report::new(message)
             .at(place, "the same for several members")
             .help("give each member its own name, as in \"part_{i}.inp\"");
     }
@@ -353,7 +367,7 @@ fn same_file(outputs: &[(Origin, String)], members: Option<usize>) -> Report {
         Some(other) => format!("\"{first}\" and \"{other}\" are one file"),
         None => format!("{} outputs are one file, \"{first}\"", outputs.len()),
     };
-    let report = Report::new("E812", message).help("give each output a name of its own");
+    let report = Report::new(message).help("give each output a name of its own");
     let labels = outputs.iter().rev().enumerate();
     let last = outputs.len().saturating_sub(1);
     labels.fold(report, |report, (k, (of, _))| report.at(*of, if k == last { "written here first" } else { "would replace it" }))
@@ -389,7 +403,8 @@ mod tests {
     #[test]
     fn a_malformed_table_has_line_and_column() {
         let at = Malformed::at(7, 3, "`1.2.3` is no number");
-        let report = FileFault::Malformed { of: Origin(1), path: "a.csv".into(), at }.describe(&Plain);
-        assert_eq!((report.code.0, report.message.as_str()), ("E803", "\"a.csv\", line 7, column 3: `1.2.3` is no number"));
+        let fault = FileFault::Malformed { of: Origin(1), path: "a.csv".into(), at };
+        let report = fault.describe(&Plain);
+        assert_eq!((fault.code().0, report.message.as_str()), ("E803", "\"a.csv\", line 7, column 3: `1.2.3` is no number"));
     }
 }

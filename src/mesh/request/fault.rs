@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::base::fault::quantities::typed;
-use crate::base::fault::{Describe, Edit, Report, Say, Subject};
+use crate::base::fault::{Code, Describe, Edit, Report, Say, Subject};
 use crate::base::origin::Origin;
 use crate::base::text::decimals;
 
@@ -391,6 +391,33 @@ fn is(n: u32) -> &'static str {
 }
 
 impl Describe for MeshFault {
+    fn code(&self) -> Code {
+        Code(match self {
+            Self::RuleUnused { .. } => "W701",
+            Self::SetInPart { .. } => "E672",
+            Self::TooMany { .. } | Self::TooMuchWork { .. } | Self::TooManySteps { .. } => "E217",
+            Self::CountsDiffer { .. } | Self::SidesDoNotClose { .. } => "E702",
+            Self::CountTooCoarse { .. }
+            | Self::CountTooFew { .. }
+            | Self::CountBelowLinks { .. }
+            | Self::GapTooWide { .. }
+            | Self::NotReached { .. } => "E703",
+            Self::QuadsImpossible { .. } | Self::OddCount { .. } | Self::TrianglesOnly { .. } => "E704",
+            Self::CannotMap { .. } => "E705",
+            Self::RuleOverridden { .. } => "W706",
+            Self::Lost { .. } => "W725",
+            Self::Sharp { .. } => "W724",
+            Self::BelowFloor { .. } | Self::FloorKeeps { .. } => "E707",
+            Self::Inverted { .. } => "E715",
+            Self::BordersCross { .. } => "E713",
+            Self::TreeTooDeep { .. } => "E716",
+            Self::FaceEmpty { .. } => "E714",
+            Self::Unsound { .. } => "E999",
+            Self::Folded { .. } => "E718",
+            Self::ClosesTooNear { .. } | Self::FallTogether { .. } => "E720",
+        })
+    }
+
     fn describe(&self, say: &dyn Say) -> Report {
         describe_rules(self, say).unwrap_or_else(|| describe_faces(self, say))
     }
@@ -406,36 +433,36 @@ fn many(count: u64) -> String {
 fn describe_rules(fault: &MeshFault, say: &dyn Say) -> Option<Report> {
     use MeshFault as F;
     Some(match fault {
-        F::RuleUnused { rule, why } => Report::new("W701", format!("this rule has no effect: {why}"))
+        F::RuleUnused { rule, why } => Report::new(format!("this rule has no effect: {why}"))
             .at(*rule, "this rule")
             .help("remove it")
             .edit(Subject::Entity(*rule), Edit::DropRule(None)),
         F::SetInPart { group, mesh, curve, at } => {
             let (set, curve) = (say.quoted(*group, "a group"), say.quoted(*curve, "a curve"));
-            Report::new("E672", format!("{set} would contain only a part of {curve}, which ends inside a border at {}", say.point(*at)))
+            Report::new(format!("{set} would contain only a part of {curve}, which ends inside a border at {}", say.point(*at)))
                 .at(*group, "this group")
                 .at(*mesh, "has no node where the curve ends")
                 .help(format!("list {curve} in the mesh too, so that its ends become nodes"))
         }
         F::TooMany { of, name, elements, limit } => {
             let size = elements.map_or_else(|| format!("more than {}", many(*limit)), many);
-            Report::new("E217", format!("the mesh `{name}` would have {size} elements"))
+            Report::new(format!("the mesh `{name}` would have {size} elements"))
                 .at(*of, "asked for here")
                 .help(format!("use a larger value; the limit is {limit} elements, `--max-elements` sets another"))
         }
         F::TooMuchWork { of, name, surface } => {
-            let report = Report::new("E217", format!("the mesh `{name}` exceeds its work limit")).at(*of, "asked for here");
+            let report = Report::new(format!("the mesh `{name}` exceeds its work limit")).at(*of, "asked for here");
             let most = format!("most of it is used for {}", say.quoted(*surface, "this face"));
             let report = if surface.is_some() { report.at(*surface, most) } else { report };
             report
                 .note("this limit follows from the number of elements; `--max-work` does not change it")
                 .help("use a value that suits the size of the face; look for points that are far off by mistake")
         }
-        F::TooManySteps { of, name, limit } => Report::new("E217", format!("the mesh `{name}` has too many steps along a border"))
+        F::TooManySteps { of, name, limit } => Report::new(format!("the mesh `{name}` has too many steps along a border"))
             .at(*of, "asked for here")
             .help(format!("use fewer steps; the limit is {limit} from corner to corner")),
         F::CountsDiffer { a, b, surface, at } => {
-            let mut report = Report::new("E702", "a mapped face needs equal counts on opposite edges");
+            let mut report = Report::new("a mapped face needs equal counts on opposite edges");
             for (count, origin) in [a, b] {
                 if origin.is_some() {
                     report = report.at(*origin, steps(*count)).edit(Subject::Entity(*origin), Edit::DropSetting);
@@ -448,8 +475,8 @@ fn describe_rules(fault: &MeshFault, say: &dyn Say) -> Option<Report> {
         }
         F::SidesDoNotClose { counts, written, surface } => {
             let [a, b, c] = counts;
-            let mut report = Report::new("E702", format!("no quads fill a face with {a}, {b} and {c} elements on its three sides"))
-                .at(*surface, "this face");
+            let mut report =
+                Report::new(format!("no quads fill a face with {a}, {b} and {c} elements on its three sides")).at(*surface, "this face");
             for (count, origin) in written {
                 report = report.at(*origin, steps(*count)).edit(Subject::Entity(*origin), Edit::DropSetting);
             }
@@ -458,25 +485,23 @@ fn describe_rules(fault: &MeshFault, say: &dyn Say) -> Option<Report> {
                 .help("drop one of the counts, or say `elements: triangles` with equal counts")
         }
         F::CountTooCoarse { count, limit, says, needed, at } => {
-            Report::new("E703", format!("{} {} too coarse for `{limit}` at {}", steps(count.0), is(count.0), say.point(*at)))
+            Report::new(format!("{} {} too coarse for `{limit}` at {}", steps(count.0), is(count.0), say.point(*at)))
                 .at(count.1, steps(count.0))
                 .at(*says, format!("asks for at least {needed}"))
                 .help(format!("count: {needed}"))
                 .edit(Subject::Entity(count.1), Edit::Put(needed.to_string()))
         }
-        F::CountTooFew { count, needed, at } => {
-            Report::new("E703", format!("with {}, edges would coincide at {}", steps(count.0), say.point(*at)))
-                .at(count.1, steps(count.0))
-                .note("a closed curve needs at least 3 elements; of two curves with the same ends, the longer needs at least 2")
-                .help(format!("count: {needed}"))
-                .edit(Subject::Entity(count.1), Edit::Put(needed.to_string()))
-        }
-        F::CountBelowLinks { count, links } => Report::new("E703", format!("{} {} too few for {links} links", steps(count.0), is(count.0)))
+        F::CountTooFew { count, needed, at } => Report::new(format!("with {}, edges would coincide at {}", steps(count.0), say.point(*at)))
+            .at(count.1, steps(count.0))
+            .note("a closed curve needs at least 3 elements; of two curves with the same ends, the longer needs at least 2")
+            .help(format!("count: {needed}"))
+            .edit(Subject::Entity(count.1), Edit::Put(needed.to_string())),
+        F::CountBelowLinks { count, links } => Report::new(format!("{} {} too few for {links} links", steps(count.0), is(count.0)))
             .at(count.1, steps(count.0))
             .help(format!("count: {links}"))
             .edit(Subject::Entity(count.1), Edit::Put(links.to_string())),
         F::RuleOverridden { key, earlier, later } => {
-            Report::new("W706", format!("`{key}` is set twice for the same part of the mesh; the later rule applies"))
+            Report::new(format!("`{key}` is set twice for the same part of the mesh; the later rule applies"))
                 .at(*earlier, "has no effect")
                 .at(*later, "applies")
                 .help("remove the first of the two")
@@ -502,21 +527,21 @@ fn describe_rules(fault: &MeshFault, say: &dyn Say) -> Option<Report> {
                 "" => (format!("at {}", say.point(*at)), "the sharpest is".to_owned()),
                 name => (format!("on `{name}`"), format!("the sharpest is at {},", say.point(*at))),
             };
-            Report::new("W724", format!("`{name}` has angles down to {} {on}", say.angle(*angle)))
+            Report::new(format!("`{name}` has angles down to {} {on}", say.angle(*angle)))
                 .at(*of, "this mesh")
                 .note(format!("{place} away from sharp corners{more}"))
                 .help(help)
         }
         F::Lost { of, name, what, length, at, more } => lost(say, (*of, name), *what, (*length, *at, *more)),
         F::BelowFloor { size, floor } => {
-            Report::new("E707", format!("the size {} is below `min_size`, {}", say.length(size.0), say.length(floor.0)))
+            Report::new(format!("the size {} is below `min_size`, {}", say.length(size.0), say.length(floor.0)))
                 .at(size.1, "below the minimum")
                 .at(floor.1, "the smallest size allowed")
                 .help(format!("lower `min_size` to {} or less", say.length(size.0)))
         }
         F::FloorKeeps { limit, says, floor, needed, at } => {
             let (place, size) = (say.point(*at), say.length(*needed));
-            Report::new("E707", format!("`min_size` prevents `{limit}` at {place}, which needs edges of {size}"))
+            Report::new(format!("`min_size` prevents `{limit}` at {place}, which needs edges of {size}"))
                 .at(*says, format!("needs {size}"))
                 .at(floor.1, format!("edges are at least {}", say.length(floor.0)))
                 .help(format!("`min_size` below {size}, or a larger `{limit}`"))
@@ -527,7 +552,7 @@ fn describe_rules(fault: &MeshFault, say: &dyn Say) -> Option<Report> {
                 MeshLimit::AngleError => say.angle(*reached),
                 _ => say.length(*reached),
             };
-            Report::new("E703", format!("`{limit}` cannot be kept on {}: {reached} at {}", say.quoted(*surface, "a face"), say.point(*at)))
+            Report::new(format!("`{limit}` cannot be kept on {}: {reached} at {}", say.quoted(*surface, "a face"), say.point(*at)))
                 .at(*says, "not kept")
                 .at(*surface, "this face")
                 .help(format!("raise `{limit}`"))
@@ -535,7 +560,7 @@ fn describe_rules(fault: &MeshFault, say: &dyn Say) -> Option<Report> {
         F::GapTooWide { gap, limit, surface, at } => {
             let off = say.length(*gap);
             let whose = say.quoted(*surface, "a face");
-            Report::new("E703", format!("`chord_error` cannot be kept on {whose}: an edge glued to it is {off} away at {}", say.point(*at)))
+            Report::new(format!("`chord_error` cannot be kept on {whose}: an edge glued to it is {off} away at {}", say.point(*at)))
                 .at(limit.1, format!("{} is not above the gap", say.length(limit.0)))
                 .at(*surface, "this face")
                 .help(format!("a `chord_error` well above {off}"))
@@ -552,7 +577,7 @@ fn describe_faces(fault: &MeshFault, say: &dyn Say) -> Report {
             let total: u64 = places.iter().map(|p| p.1).sum();
             let triangles = if total == 1 { "element must be a triangle" } else { "elements must be triangles" };
             let mut report =
-                Report::new("E704", format!("`elements: quads` is impossible here: {total} {triangles}")).at(*mesh, "`elements: quads`");
+                Report::new(format!("`elements: quads` is impossible here: {total} {triangles}")).at(*mesh, "`elements: quads`");
             for (surface, count, at) in places.iter().take(8) {
                 let plural = if *count == 1 { "" } else { "s" };
                 report = report.at(*surface, format!("{count} triangle{plural} at {}", say.point(*at)));
@@ -560,8 +585,7 @@ fn describe_faces(fault: &MeshFault, say: &dyn Say) -> Report {
             report.help("elements: mixed").edit(Subject::Entity(*mesh), Edit::Set("elements", "mixed".to_owned()))
         }
         F::OddCount { count, surface, at } => {
-            let mut report =
-                Report::new("E704", format!("`elements: quads` is impossible here: an odd number of steps at {}", say.point(*at)));
+            let mut report = Report::new(format!("`elements: quads` is impossible here: an odd number of steps at {}", say.point(*at)));
             if count.1.is_some() {
                 let even = (count.0 + 1).to_string();
                 report = report.at(count.1, steps(count.0)).help(format!("count: {even}")).edit(Subject::Entity(count.1), Edit::Put(even));
@@ -569,41 +593,35 @@ fn describe_faces(fault: &MeshFault, say: &dyn Say) -> Report {
             report.at(*surface, "is meshed freely, so its border needs an even number of steps in all")
         }
         F::TrianglesOnly { of, method, surface, at } => {
-            Report::new("E704", format!("`elements: quads` is impossible here: `method: {method}` makes triangles, at {}", say.point(*at)))
+            Report::new(format!("`elements: quads` is impossible here: `method: {method}` makes triangles, at {}", say.point(*at)))
                 .at(*of, "`elements: quads`")
                 .at(*surface, "this face")
                 .help("method: delaunay")
         }
         F::CannotMap { surface, why, at } => {
-            Report::new("E705", format!("{} cannot be mapped at {}: {why}", say.quoted(*surface, "a face"), say.point(*at)))
+            Report::new(format!("{} cannot be mapped at {}: {why}", say.quoted(*surface, "a face"), say.point(*at)))
                 .at(*surface, "this face")
         }
-        F::Inverted { surface, count, uv, at, free } => Report::new(
-            "E715",
-            format!(
-                "{count} {} inverted or without area in {}, the first at {} (u {}, v {})",
-                if *count == 1 { "element is" } else { "elements are" },
-                say.quoted(*surface, "a face"),
-                say.point(*at),
-                decimals(uv.0, 3),
-                decimals(uv.1, 3)
-            ),
-        )
+        F::Inverted { surface, count, uv, at, free } => Report::new(format!(
+            "{count} {} inverted or without area in {}, the first at {} (u {}, v {})",
+            if *count == 1 { "element is" } else { "elements are" },
+            say.quoted(*surface, "a face"),
+            say.point(*at),
+            decimals(uv.0, 3),
+            decimals(uv.1, 3)
+        ))
         .at(*surface, if *free { "has no room for convex quads there" } else { "folds there" })
         .help(if *free {
             "a smaller `size` or a larger `count` on the borders there, or `elements: mixed`"
         } else {
             "add a curve across the fold, or divide the surface in two"
         }),
-        F::BordersCross { surface, at, size } => Report::new(
-            "E713",
-            format!(
-                "borders of {} divided into steps of {} cross or touch at {}",
-                say.quoted(*surface, "a face"),
-                say.length(*size),
-                say.point(*at)
-            ),
-        )
+        F::BordersCross { surface, at, size } => Report::new(format!(
+            "borders of {} divided into steps of {} cross or touch at {}",
+            say.quoted(*surface, "a face"),
+            say.length(*size),
+            say.point(*at)
+        ))
         .at(*surface, "this face")
         .help("move the borders further apart, or divide them more finely there"),
         F::Folded { surface, method, at, turn } => {
@@ -612,61 +630,52 @@ fn describe_faces(fault: &MeshFault, say: &dyn Say) -> Report {
                 Some(turn) => format!("{name} folds over at {at}, where its normal turns by {}", say.angle(*turn)),
                 None => format!("{name} has no normal at {at}"),
             };
-            Report::new("E718", format!("{why}: elements of `method: {method}` overlap there"))
+            Report::new(format!("{why}: elements of `method: {method}` overlap there"))
                 .at(*surface, "this face")
                 .help("add a curve across the fold, or divide the surface in two")
         }
-        F::ClosesTooNear { surface, method, at, close: Close::Turn } => Report::new(
-            "E720",
-            format!(
-                "a border of {} turns back along itself at {}, where elements of `method: {method}` would coincide",
-                say.quoted(*surface, "a face"),
-                say.point(*at)
-            ),
-        )
+        F::ClosesTooNear { surface, method, at, close: Close::Turn } => Report::new(format!(
+            "a border of {} turns back along itself at {}, where elements of `method: {method}` would coincide",
+            say.quoted(*surface, "a face"),
+            say.point(*at)
+        ))
         .at(*surface, "this face")
         .help("move the points of that border so that it does not turn back, or set a smaller `size`"),
-        F::ClosesTooNear { surface, method, at, close } => Report::new(
-            "E720",
-            format!(
-                "{} closes on itself at {}, where elements of `method: {method}` would coincide",
-                say.quoted(*surface, "a face"),
-                say.point(*at)
-            ),
-        )
+        F::ClosesTooNear { surface, method, at, close } => Report::new(format!(
+            "{} closes on itself at {}, where elements of `method: {method}` would coincide",
+            say.quoted(*surface, "a face"),
+            say.point(*at)
+        ))
         .at(*surface, "this face")
         .help(match *method {
             "mapped" => "a smaller `size`",
             _ if *close == Close::Tip => "`method: mapped` meshes the tip in rows",
             _ => "a smaller `size`, or `method: mapped`",
         }),
-        F::FallTogether { surfaces: [first, second], at } => Report::new(
-            "E720",
-            format!(
-                "{} and {} coincide at {}: both would have the same edge or element there",
-                say.quoted(*first, "a face"),
-                say.quoted(*second, "another face"),
-                say.point(*at)
-            ),
-        )
+        F::FallTogether { surfaces: [first, second], at } => Report::new(format!(
+            "{} and {} coincide at {}: both would have the same edge or element there",
+            say.quoted(*first, "a face"),
+            say.quoted(*second, "another face"),
+            say.point(*at)
+        ))
         .at(*first, "this face")
         .at(*second, "and this one have the same nodes there")
         .help("a `count` of 2 or more on the borders near that place, or a smaller `size`"),
-        F::Unsound { mesh: (mesh, name), surface, method, elements: [triangles, quads], what, at } => Report::new(
-            "E999",
-            format!("a bug in loft: the mesh `{name}` is wrong on {}: {what}, at {}", say.quoted(*surface, "a face"), say.point(*at)),
-        )
+        F::Unsound { mesh: (mesh, name), surface, method, elements: [triangles, quads], what, at } => Report::new(format!(
+            "a bug in loft: the mesh `{name}` is wrong on {}: {what}, at {}",
+            say.quoted(*surface, "a face"),
+            say.point(*at)
+        ))
         .at(*mesh, "this mesh was not made")
         .at(*surface, format!("this face, {triangles} triangles and {quads} quads of `method: {method}`"))
         .help("please report it with this script; another `method` or `size` may work meanwhile"),
-        F::TreeTooDeep { surface, at, levels } => Report::new(
-            "E716",
-            format!("the quadtree of {} needs more than {levels} levels at {}", say.quoted(*surface, "a face"), say.point(*at)),
-        )
-        .at(*surface, "has a piece of border there shorter than a millionth of the size")
-        .help("method: delaunay"),
+        F::TreeTooDeep { surface, at, levels } => {
+            Report::new(format!("the quadtree of {} needs more than {levels} levels at {}", say.quoted(*surface, "a face"), say.point(*at)))
+                .at(*surface, "has a piece of border there shorter than a millionth of the size")
+                .help("method: delaunay")
+        }
         F::FaceEmpty { surface, at } => {
-            Report::new("E714", format!("{} has nothing inside its border at {}", say.quoted(*surface, "a face"), say.point(*at)))
+            Report::new(format!("{} has nothing inside its border at {}", say.quoted(*surface, "a face"), say.point(*at)))
                 .at(*surface, "this face")
         }
         // Answered by the table above; listed so that a new fault cannot be forgotten.
@@ -686,7 +695,7 @@ fn describe_faces(fault: &MeshFault, say: &dyn Say) -> Report {
         | F::BelowFloor { .. }
         | F::FloorKeeps { .. }
         | F::GapTooWide { .. }
-        | F::NotReached { .. } => Report::new("E999", "a fault that another table has words for"),
+        | F::NotReached { .. } => Report::new("a fault that another table has words for"),
     }
 }
 
@@ -703,7 +712,7 @@ fn lost(say: &dyn Say, (of, mesh): (Origin, &str), what: LostPart, (length, at, 
         }
         LostPart::Face(surface) => (format!("a face of {}", say.quoted(surface, "a surface")), "line", "no element there"),
     };
-    let report = Report::new("W725", format!("{part} became a {as_what} of `{mesh}` at {}", say.point(at)));
+    let report = Report::new(format!("{part} became a {as_what} of `{mesh}` at {}", say.point(at)));
     let report = match what {
         LostPart::Hole { hole, surface } => report.at(hole, "is filled in the mesh").at(surface, "has this hole"),
         LostPart::Curve(curve) => report.at(curve, "is not longer than the gluing distance"),

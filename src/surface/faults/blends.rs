@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{Describe, Report, Say};
+use crate::base::fault::{Code, Describe, Report, Say};
 use crate::base::origin::Origin;
 
 /// Why two surfaces have no edge that a ball can roll along. Points are in model units.
@@ -86,6 +86,13 @@ pub enum BlendFault {
 }
 
 impl Describe for BlendFault {
+    fn code(&self) -> Code {
+        Code(match self {
+            Self::TooLarge { .. } => "E673",
+            Self::NoEdge { .. } => "E674",
+        })
+    }
+
     fn describe(&self, say: &dyn Say) -> Report {
         match self {
             Self::TooLarge { blend, a, b, radius, largest, at } => {
@@ -96,7 +103,7 @@ impl Describe for BlendFault {
                     say.point(*at),
                     say.length(floored(*largest))
                 );
-                Report::new("E673", message)
+                Report::new(message)
                     .at(*blend, "too large here")
                     .help("take a smaller `radius:`, or surfaces that extend farther from the edge")
             }
@@ -114,7 +121,7 @@ fn floored(length: f64) -> f64 {
 
 fn no_edge((a, b): (Origin, Origin), why: &NoBlend, say: &dyn Say) -> Report {
     let (x, y) = (say.quoted(a, "one surface"), say.quoted(b, "the other"));
-    let report = |message: String| Report::new("E674", message);
+    let report = |message: String| Report::new(message);
     match why {
         NoBlend::Apart { touch: Some(at) } => report(format!("{x} and {y} meet in no edge: they touch at {}", say.point(*at))),
         NoBlend::Apart { touch: None } => {

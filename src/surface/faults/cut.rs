@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{Describe, Report, Say};
+use crate::base::fault::{Code, Describe, Report, Say};
 use crate::base::origin::Origin;
 
 /// What can go wrong where surfaces meet or are cut. Lengths are model units.
@@ -122,6 +122,26 @@ pub enum CutFault {
 }
 
 impl Describe for CutFault {
+    fn code(&self) -> Code {
+        Code(match self {
+            Self::NoCurve { .. } => "E507",
+            Self::SeveralCurves { .. } => "E508",
+            Self::NotOneSection { curves, .. } => {
+                if curves.is_empty() {
+                    "E507"
+                } else {
+                    "E508"
+                }
+            }
+            Self::RunAlong { .. } => "E657",
+            Self::WithoutEnd { .. } => "E658",
+            Self::CutOpen { .. } => "E659",
+            Self::NotDivided { .. } => "E999",
+            Self::NothingParted { .. } | Self::CutsTooNear { .. } | Self::PartsNotWhole { .. } => "E721",
+            Self::KeepOff { .. } => "E660",
+        })
+    }
+
     fn describe(&self, say: &dyn Say) -> Report {
         match self {
             Self::NoCurve { a, b, touch, tolerance } => {
@@ -130,45 +150,42 @@ impl Describe for CutFault {
                     Some(at) => format!("{x} and {y} meet in no curve: they touch at {}", say.point(*at)),
                     None => format!("{x} and {y} do not meet"),
                 };
-                let report = Report::new("E507", message).at(*a, "this surface").at(*b, "and this one");
+                let report = Report::new(message).at(*a, "this surface").at(*b, "and this one");
                 report.note(format!("the model's tolerance is {}", say.length(*tolerance)))
             }
             Self::SeveralCurves { a, b, curves } => {
                 let list = listed(curves, say);
                 let (x, y) = (say.quoted(*a, "one surface"), say.quoted(*b, "the other"));
-                Report::new("E508", format!("{x} and {y} meet in {} curves: {list}", curves.len()))
+                Report::new(format!("{x} and {y} meet in {} curves: {list}", curves.len()))
                     .at(*a, "this surface")
                     .at(*b, "and this one")
                     .help("`meet(a, b)` is the list of all of them")
             }
             Self::NotOneSection { of, curves } if curves.is_empty() => {
-                Report::new("E507", "the mesh and the plane do not meet").at(*of, "asked for here")
+                Report::new("the mesh and the plane do not meet").at(*of, "asked for here")
             }
             Self::NotOneSection { of, curves } => {
                 let message = format!("the mesh and the plane meet in {} curves: {}", curves.len(), listed(curves, say));
-                Report::new("E508", message).at(*of, "asked for here").help("`section(a, b)` is the list of all of them")
+                Report::new(message).at(*of, "asked for here").help("`section(a, b)` is the list of all of them")
             }
-            Self::RunAlong { a, b, at, tolerance } => Report::new(
-                "E657",
-                format!(
-                    "{} and {} run along each other near {}, so the curve in which they meet is not well defined",
-                    say.quoted(*a, "one surface"),
-                    say.quoted(*b, "the other"),
-                    say.point(*at)
-                ),
-            )
+            Self::RunAlong { a, b, at, tolerance } => Report::new(format!(
+                "{} and {} run along each other near {}, so the curve in which they meet is not well defined",
+                say.quoted(*a, "one surface"),
+                say.quoted(*b, "the other"),
+                say.point(*at)
+            ))
             .at(*a, "this surface")
             .at(*b, "and this one")
             .note(format!("they are nearer than the model's tolerance, {}, and almost parallel there", say.length(*tolerance))),
             Self::NotDivided { surface, what, at } => {
                 let name = say.quoted(*surface, "the surface");
-                Report::new("E999", format!("a bug in loft: {name} is divided wrongly: {what} at {}", say.point(*at)))
+                Report::new(format!("a bug in loft: {name} is divided wrongly: {what} at {}", say.point(*at)))
                     .at(*surface, "this surface")
                     .help("please report it with this script; moving the curves a little may help meanwhile")
             }
             Self::NothingParted { surface, at, tolerance } => {
                 let (name, at) = (say.quoted(*surface, "the surface"), say.point(*at));
-                Report::new("E721", format!("a cut of {name} cannot be followed to its end near {at}: both of its sides are one part"))
+                Report::new(format!("a cut of {name} cannot be followed to its end near {at}: both of its sides are one part"))
                     .at(*surface, "this surface")
                     .help("a smaller `tolerance` separates curves, and bends of a curve, that are close together")
                     .note(format!(
@@ -179,7 +196,7 @@ impl Describe for CutFault {
             Self::CutsTooNear { surface, cuts: [one, other], at, apart, tolerance } => {
                 let (name, at) = (say.quoted(*surface, "the surface"), say.point(*at));
                 let message = format!("curves that divide {name} are only {} apart at {at}: no part fits between", say.length(*apart));
-                let mut report = Report::new("E721", message).at(*surface, "this surface");
+                let mut report = Report::new(message).at(*surface, "this surface");
                 if one != surface {
                     report = report.at(*one, "this curve");
                 }
@@ -197,7 +214,7 @@ impl Describe for CutFault {
                     "the parts of {name} make up {:.4} % of its area: curves that divide it come too close together",
                     100.0 * parts / whole
                 );
-                let report = cuts.iter().fold(Report::new("E721", message).at(*surface, "this surface"), |r, cut| r.at(*cut, "this curve"));
+                let report = cuts.iter().fold(Report::new(message).at(*surface, "this surface"), |r, cut| r.at(*cut, "this curve"));
                 report.help("a smaller `tolerance` separates curves that are close together").note(format!(
                     "points closer together than four times the model's tolerance of {} count as one",
                     say.length(*tolerance)
@@ -212,7 +229,7 @@ impl Describe for CutFault {
                     _ => format!("both its ends lie inside, at {}", places.join(" and ")),
                 };
                 let (which, whole) = (say.quoted(*cutter, "a curve"), say.quoted(*surface, "the surface"));
-                Report::new("E659", format!("{which} cuts nothing off {whole}: {why}"))
+                Report::new(format!("{which} cuts nothing off {whole}: {why}"))
                     .at(*cutter, if ends.is_empty() { "divides nothing" } else { "ends inside" })
                     .at(*surface, "this surface")
                     .help("a curve divides a surface when it runs from border to border, or closes, alone or with others")
@@ -222,14 +239,14 @@ impl Describe for CutFault {
                 let report = match on {
                     Some(cutter) => {
                         let message = format!("the point {p} to keep lies on {}, between two parts", say.quoted(*cutter, "a cut"));
-                        Report::new("E660", message).at(*cutter, "cuts here")
+                        Report::new(message).at(*cutter, "cuts here")
                     }
-                    None if *off > 0.0 => Report::new("E660", format!("the point {p} to keep is {} off {name}", say.length(*off))),
-                    None => Report::new("E660", format!("the point {p} to keep lies in no part of {name}")),
+                    None if *off > 0.0 => Report::new(format!("the point {p} to keep is {} off {name}", say.length(*off))),
+                    None => Report::new(format!("the point {p} to keep lies in no part of {name}")),
                 };
                 report.at(*surface, "this surface").note(format!("the model's tolerance is {}", say.length(*tolerance)))
             }
-            Self::WithoutEnd { of } => Report::new("E658", "two unbounded planes meet in an infinite line")
+            Self::WithoutEnd { of } => Report::new("two unbounded planes meet in an infinite line")
                 .at(*of, "a curve has a finite length")
                 .help("bound one of them: `plane(curves)` is the face inside curves"),
         }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{Describe, Report, Say};
+use crate::base::fault::{Code, Describe, Report, Say};
 use crate::base::origin::Origin;
 
 /// E722: why surfaces are not joined. Lengths and points are in model units.
@@ -36,8 +36,14 @@ pub enum JoinFault {
 }
 
 impl Describe for JoinFault {
+    fn code(&self) -> Code {
+        Code(match self {
+            Self::Apart { .. } | Self::NotInRow { .. } | Self::NotFourSided { .. } => "E722",
+        })
+    }
+
     fn describe(&self, say: &dyn Say) -> Report {
-        let report = |message: String| Report::new("E722", message);
+        let report = |message: String| Report::new(message);
         match self {
             Self::Apart { a, b, gap, at } => {
                 let (x, y) = (say.quoted(*a, "one surface"), say.quoted(*b, "the other"));

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{Describe, Edit, Report, Say, Subject};
+use crate::base::fault::{Code, Describe, Edit, Report, Say, Subject};
 use crate::base::origin::Origin;
 
 /// What the curves of a loop were given for.
@@ -109,13 +109,36 @@ pub enum LoopFault {
 }
 
 impl Describe for LoopFault {
+    fn code(&self) -> Code {
+        Code(match self {
+            Self::Open { .. } | Self::ClosedAmong { .. } => "E502",
+            Self::Outside { .. } => "E612",
+            Self::Meet { outer, .. } => {
+                if *outer {
+                    "E612"
+                } else {
+                    "E661"
+                }
+            }
+            Self::Repeated { b: (_, earlier), .. } => {
+                if earlier.is_none() {
+                    "E612"
+                } else {
+                    "E661"
+                }
+            }
+            Self::Nested { .. } => "E662",
+            Self::Twice { .. } => "E663",
+        })
+    }
+
     fn describe(&self, say: &dyn Say) -> Report {
         match self {
             Self::Open { .. } => open(self, say),
             Self::ClosedAmong { given, closed, open, role } => closed_among(given, (closed, open), *role, say),
             Self::Outside { hole, outer, trimming, at } => {
                 let (which, around) = (say.quoted(*hole, "the hole"), say.quoted(*outer, "the surface"));
-                Report::new("E612", format!("{which} is not inside the outer loop {around}: its point {} is outside", say.point(*at)))
+                Report::new(format!("{which} is not inside the outer loop {around}: its point {} is outside", say.point(*at)))
                     .at(*hole, "this hole")
                     .at(*outer, "the outer loop")
                     .at(*trimming, "trimmed here")
@@ -125,14 +148,14 @@ impl Describe for LoopFault {
             Self::Repeated { a, b, trimming } => repeated(*a, *b, *trimming, say),
             Self::Nested { inner, around, trimming, at } => {
                 let (which, other) = (say.quoted(*inner, "one hole"), say.quoted(*around, "another one"));
-                Report::new("E662", format!("the hole {which} lies inside the hole {other}, at {}", say.point(*at)))
+                Report::new(format!("the hole {which} lies inside the hole {other}, at {}", say.point(*at)))
                     .at(*inner, "this hole")
                     .at(*around, "inside this one")
                     .at(*trimming, "trimmed here")
                     .help(format!("leave {which} out; an island in a hole is a surface of its own"))
             }
             Self::Twice { of, argument, places, hole } => {
-                let report = Report::new("E663", format!("{} is given twice", say.quoted(*of, "one curve"))).help("give each curve once");
+                let report = Report::new(format!("{} is given twice", say.quoted(*of, "one curve"))).help("give each curve once");
                 match hole {
                     Some(k) => report.label(Subject::Item(argument, *k), "in this loop").at(*of, "this curve"),
                     None => report
@@ -146,7 +169,7 @@ impl Describe for LoopFault {
 }
 
 fn open(fault: &LoopFault, say: &dyn Say) -> Report {
-    let LoopFault::Open { of, ends, closes, role, together, tolerance } = fault else { return Report::new("E502", "the loop is open") };
+    let LoopFault::Open { of, ends, closes, role, together, tolerance } = fault else { return Report::new("the loop is open") };
     let name = say.quoted(*of, "the curve");
     let what = match role {
         LoopRole::Plane => "the boundary does not close",
@@ -154,7 +177,7 @@ fn open(fault: &LoopFault, say: &dyn Say) -> Report {
         LoopRole::Hole(_) => "the hole does not close",
     };
     let (start, end) = say.pair(ends.0, ends.1);
-    let report = Report::new("E502", format!("{what}: {name} starts at {start} and ends at {end}")).at(*of, "an open curve").note(format!(
+    let report = Report::new(format!("{what}: {name} starts at {start} and ends at {end}")).at(*of, "an open curve").note(format!(
         "the gap is {}; the model's tolerance is {}",
         say.length(ends.0.distance(ends.1)),
         say.length(*tolerance)
@@ -182,7 +205,7 @@ fn closed_among(given: &[Origin], (closed, open): (&[Origin], &[Origin]), role: 
         }
         all => format!("{} are all closed", all.join(", ")),
     };
-    let mut report = Report::new("E502", format!("{many}; a loop of several curves consists of open ones"));
+    let mut report = Report::new(format!("{many}; a loop of several curves consists of open ones"));
     for of in closed.iter().take(SHOWN) {
         report = report.at(*of, "closed");
     }
@@ -211,9 +234,8 @@ fn closed_among(given: &[Origin], (closed, open): (&[Origin], &[Origin]), role: 
 
 fn meet(fault: &LoopFault, say: &dyn Say) -> Report {
     let LoopFault::Meet { a, b, outer, trimming, places, run, apart, tolerance } = fault else {
-        return Report::new("E661", "two loops meet");
+        return Report::new("two loops meet");
     };
-    let code = if *outer { "E612" } else { "E661" };
     let (first, second) = (say.quoted(*a, "one hole"), say.quoted(*b, if *outer { "the surface" } else { "another one" }));
     let whom = if *outer { format!("the hole {first} and the outer loop {second}") } else { format!("the holes {first} and {second}") };
     // Curves that were carried to a surface are up to a quarter of the tolerance off.
@@ -230,7 +252,7 @@ fn meet(fault: &LoopFault, say: &dyn Say) -> Report {
             format!("{whom} meet at {}{more}", list.join(" and "))
         }
     };
-    let report = Report::new(code, message)
+    let report = Report::new(message)
         .at(*a, "this hole")
         .at(*b, if *outer { "the outer loop" } else { "meets this one" })
         .at(*trimming, "trimmed here");
@@ -252,20 +274,20 @@ const SHOWN: usize = 4;
 fn repeated(a: (Origin, usize), b: (Origin, Option<usize>), trimming: Origin, say: &dyn Say) -> Report {
     let (first, second) = (say.quoted(a.0, "one hole"), say.quoted(b.0, "another one"));
     let Some(earlier) = b.1 else {
-        return Report::new("E612", format!("the hole {first} runs along the whole outer loop {second}: nothing would be left"))
+        return Report::new(format!("the hole {first} runs along the whole outer loop {second}: nothing would be left"))
             .at(a.0, "this hole")
             .at(b.0, "the outer loop")
             .at(trimming, "trimmed here")
             .help("a hole lies wholly inside");
     };
     if a.0 == b.0 {
-        return Report::new("E661", format!("the hole {first} is given twice"))
+        return Report::new(format!("the hole {first} is given twice"))
             .label(Subject::Item("holes", earlier), "here")
             .label(Subject::Item("holes", a.1), "and here again")
             .at(a.0, "this hole")
             .help("give each hole once");
     }
-    Report::new("E661", format!("the holes {first} and {second} are the same loop"))
+    Report::new(format!("the holes {first} and {second} are the same loop"))
         .at(a.0, "this hole")
         .at(b.0, "is this one again")
         .at(trimming, "trimmed here")

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{Describe, Edit, Report, Say, Subject};
+use crate::base::fault::{Code, Describe, Edit, Report, Say, Subject};
 use crate::base::origin::Origin;
 use crate::base::text::{decimals, real};
 
@@ -221,12 +221,34 @@ const ACROSS: &str =
     "draw the profile across the path, at its start (`-path` starts at the other end), and smaller than the bends of the path";
 
 impl Describe for SurfaceFault {
+    fn code(&self) -> Code {
+        Code(match self {
+            Self::PatchSingular { .. } => "W606",
+            Self::PatchFolded { .. } => "W607",
+            Self::CrossesItself { .. } => "W669",
+            Self::TransfiniteOscillation { .. } => "N608",
+            Self::EndTrimmed { .. } => "N609",
+            Self::LoopSelfIntersects { .. } => "E611",
+            Self::SliverPatch { .. } => "W614",
+            Self::LoopGoesRound { .. } => "E612",
+            Self::LoopOutsideSurface { .. } | Self::LoopOutsideParameters { .. } => "E613",
+            Self::AxisNotStraight { .. } => "E621",
+            Self::GeneratrixOnAxis { .. } => "E622",
+            Self::GeneratrixCrossesAxis { .. } => "E623",
+            Self::SweepDegenerate { .. } => "E624",
+            Self::GridUneven { .. } => "W651",
+            Self::NoNet { .. } => "E676",
+            Self::OffsetFolds { .. } => "W664",
+            Self::PlaneNotFlat { .. } => "E655",
+        })
+    }
+
     fn describe(&self, say: &dyn Say) -> Report {
         use SurfaceFault as F;
         let uv = |(u, v): (f64, f64)| format!("u {}, v {}", decimals(u, 3), decimals(v, 3));
         match self {
             F::PatchSingular { surface, uv: place, at, made } => {
-                Report::new("W606", format!("{} has no normal at {}, {}", say.quoted(*surface, "this surface"), uv(*place), say.point(*at)))
+                Report::new(format!("{} has no normal at {}, {}", say.quoted(*surface, "this surface"), uv(*place), say.point(*at)))
                     .at(*surface, "u and v tangents are parallel there")
                     .help(match made {
                         Construction::Curves => "let no two borders be tangent to each other at a corner, or take the corner as `pole:`",
@@ -234,16 +256,13 @@ impl Describe for SurfaceFault {
                         Construction::Carried => ACROSS,
                     })
             }
-            F::PatchFolded { surface, uv: place, at, turn, made } => Report::new(
-                "W607",
-                format!(
-                    "{} folds over: its normal turns by {} at {}, {}",
-                    say.quoted(*surface, "this surface"),
-                    say.angle(*turn),
-                    uv(*place),
-                    say.point(*at)
-                ),
-            )
+            F::PatchFolded { surface, uv: place, at, turn, made } => Report::new(format!(
+                "{} folds over: its normal turns by {} at {}, {}",
+                say.quoted(*surface, "this surface"),
+                say.angle(*turn),
+                uv(*place),
+                say.point(*at)
+            ))
             .at(*surface, "the parametrisation folds there")
             .help(match made {
                 Construction::Curves => "add a curve across the fold, or divide the surface in two",
@@ -256,75 +275,63 @@ impl Describe for SurfaceFault {
                     Some((a, b)) => format!("{name} crosses itself at {at}: {} and {} are the same point", uv(*a), uv(*b)),
                     None => format!("{name} crosses itself at {at}: two of its faces cross there"),
                 };
-                Report::new("W669", message)
+                Report::new(message)
                     .at(*surface, "passes through itself there")
                     .help("a mesh of it has no nodes on the crossing line: move the curves apart, or build parts that meet along that line")
             }
-            F::TransfiniteOscillation { surface, direction, curves, lebesgue } => Report::new(
-                "N608",
-                format!(
-                    "{} may oscillate between its {curves} curves across {direction}: errors grow up to {lebesgue:.1} times",
-                    say.quoted(*surface, "this surface")
-                ),
-            )
+            F::TransfiniteOscillation { surface, direction, curves, lebesgue } => Report::new(format!(
+                "{} may oscillate between its {curves} curves across {direction}: errors grow up to {lebesgue:.1} times",
+                say.quoted(*surface, "this surface")
+            ))
             .at(*surface, "one polynomial through all curves")
             .help("`coons` with the same curves stays between them"),
             F::LoopGoesRound { of, surface, trimming, at } => {
                 let (which, whose) = (say.quoted(*of, "the loop"), say.quoted(*surface, "the surface"));
-                Report::new(
-                    "E612",
-                    format!("{which} runs around {whose} through {}, with a border on each side: it bounds no part alone", say.point(*at)),
-                )
+                Report::new(format!(
+                    "{which} runs around {whose} through {}, with a border on each side: it bounds no part alone",
+                    say.point(*at)
+                ))
                 .at(*trimming, "trimmed here")
                 .at(*of, "this loop")
                 .help("`by:` this loop with `keep:` a point of the part that stays")
             }
-            F::LoopOutsideSurface { of, surface, off, at, tolerance } => Report::new(
-                "E613",
-                format!(
-                    "{} leaves {}: it is {} away at {}, and the tolerance is {}",
-                    say.quoted(*of, "the curve"),
-                    say.quoted(*surface, "the surface"),
-                    say.length(*off),
-                    say.point(*at),
-                    say.length(*tolerance)
-                ),
-            )
+            F::LoopOutsideSurface { of, surface, off, at, tolerance } => Report::new(format!(
+                "{} leaves {}: it is {} away at {}, and the tolerance is {}",
+                say.quoted(*of, "the curve"),
+                say.quoted(*surface, "the surface"),
+                say.length(*off),
+                say.point(*at),
+                say.length(*tolerance)
+            ))
             .at(*of, "this loop")
             .at(*surface, "this surface")
             .help("build the curve on the surface, or `project` it"),
             F::LoopOutsideParameters { of, surface, uv } => {
                 let (curve, of_surface) = (say.quoted(*of, "the curve"), say.quoted(*surface, "the surface"));
-                Report::new("E613", format!("{curve} leaves {of_surface} at u = {}, v = {}: both run from 0 to 1", real(uv.0), real(uv.1)))
+                Report::new(format!("{curve} leaves {of_surface} at u = {}, v = {}: both run from 0 to 1", real(uv.0), real(uv.1)))
                     .at(*of, "x and y of this loop are u and v")
                     .at(*surface, "this surface")
             }
-            F::LoopSelfIntersects { a, b, at, along } => Report::new(
-                "E611",
-                format!(
-                    "the boundary crosses itself: {} meets {} at {}, {} % along one and {} % along the other",
-                    say.quoted(*a, "one curve"),
-                    say.quoted(*b, "another one"),
-                    say.point(*at),
-                    (along.0 * 100.0).round(),
-                    (along.1 * 100.0).round()
-                ),
-            )
+            F::LoopSelfIntersects { a, b, at, along } => Report::new(format!(
+                "the boundary crosses itself: {} meets {} at {}, {} % along one and {} % along the other",
+                say.quoted(*a, "one curve"),
+                say.quoted(*b, "another one"),
+                say.point(*at),
+                (along.0 * 100.0).round(),
+                (along.1 * 100.0).round()
+            ))
             .at(*a, "this curve")
             .at(*b, "crosses this one")
             .help("list the corners in order around the face"),
-            F::SliverPatch { surface, direction, from_to, width, neighbour, at } => Report::new(
-                "W614",
-                format!(
-                    "kinks of {} almost face each other: a strip {} wide beside one of {}, {direction} {} to {}, at {}",
-                    say.quoted(*surface, "this surface"),
-                    say.length(*width),
-                    say.length(*neighbour),
-                    decimals(from_to.0, 6),
-                    decimals(from_to.1, 6),
-                    say.point(*at)
-                ),
-            )
+            F::SliverPatch { surface, direction, from_to, width, neighbour, at } => Report::new(format!(
+                "kinks of {} almost face each other: a strip {} wide beside one of {}, {direction} {} to {}, at {}",
+                say.quoted(*surface, "this surface"),
+                say.length(*width),
+                say.length(*neighbour),
+                decimals(from_to.0, 6),
+                decimals(from_to.1, 6),
+                say.point(*at)
+            ))
             .at(*surface, "the kinks of opposite borders split it here")
             .help("move the kinks to the same fraction of the length on both borders"),
             F::NoNet { surface, trimmed } => {
@@ -332,37 +339,29 @@ impl Describe for SurfaceFault {
                     true => ("is trimmed", "take `nurbs` of the surface that it was cut from, and trim that"),
                     false => ("is a plane without four sides", "bound it by four curves"),
                 };
-                Report::new("E676", format!("{} has no B-spline form: it {why}", say.quoted(*surface, "the surface")))
-                    .at(*surface, why)
-                    .help(help)
+                Report::new(format!("{} has no B-spline form: it {why}", say.quoted(*surface, "the surface"))).at(*surface, why).help(help)
             }
-            F::AxisNotStraight { axis, off, at } => Report::new(
-                "E621",
-                format!(
-                    "the axis {} is not straight: {} off at {}",
-                    say.quoted(*axis, "of the rotation"),
-                    say.length(*off),
-                    say.point(*at)
-                ),
-            )
+            F::AxisNotStraight { axis, off, at } => Report::new(format!(
+                "the axis {} is not straight: {} off at {}",
+                say.quoted(*axis, "of the rotation"),
+                say.length(*off),
+                say.point(*at)
+            ))
             .at(*axis, "must be one straight line")
             .help("axis: line((0, 0, 0), (0, 0, 1))")
             .edit(Subject::Call, Edit::Set("axis", "line((0, 0, 0), (0, 0, 1))".to_owned())),
             F::GeneratrixOnAxis { profile, from, to } => {
                 let (from, to) = say.pair(*from, *to);
-                Report::new("E622", format!("{} lies on the axis from {from} to {to}", say.quoted(*profile, "the profile")))
+                Report::new(format!("{} lies on the axis from {from} to {to}", say.quoted(*profile, "the profile")))
                     .at(*profile, "sweeps no area there")
                     .help("leave that stretch out: `profile[A..B]`")
             }
-            F::GeneratrixCrossesAxis { profile, at, fraction } => Report::new(
-                "E623",
-                format!(
-                    "{} meets the axis between its ends, at {}, {} % along",
-                    say.quoted(*profile, "the profile"),
-                    say.point(*at),
-                    decimals(fraction * 100.0, 1)
-                ),
-            )
+            F::GeneratrixCrossesAxis { profile, at, fraction } => Report::new(format!(
+                "{} meets the axis between its ends, at {}, {} % along",
+                say.quoted(*profile, "the profile"),
+                say.point(*at),
+                decimals(fraction * 100.0, 1)
+            ))
             .at(*profile, "meets the axis")
             .help(format!("revolve one side only: `{}[0%..{}%]`", named_or(say.name(*profile), "profile"), decimals(fraction * 100.0, 6)))
             .edit(
@@ -371,18 +370,15 @@ impl Describe for SurfaceFault {
             ),
             F::SweepDegenerate { profile, from, to } => {
                 let ((from, to), which) = (say.pair(*from, *to), say.quoted(*profile, "the profile"));
-                Report::new("E624", format!("{which} runs along the direction of the sweep from {from} to {to}: no area"))
+                Report::new(format!("{which} runs along the direction of the sweep from {from} to {to}: no area"))
                     .at(*profile, "parallel to the sweep")
                     .help("choose another `by:`, or leave that stretch out")
             }
-            F::GridUneven { surface, line, index, ratio, at } => Report::new(
-                "W651",
-                format!(
-                    "{line} {index} of {} deviates from the mean spacing by a factor of {ratio:.1} at {}",
-                    say.quoted(*surface, "this grid"),
-                    say.point(*at)
-                ),
-            )
+            F::GridUneven { surface, line, index, ratio, at } => Report::new(format!(
+                "{line} {index} of {} deviates from the mean spacing by a factor of {ratio:.1} at {}",
+                say.quoted(*surface, "this grid"),
+                say.point(*at)
+            ))
             .at(*surface, "all rows share one parameter")
             .help("resample the rows: `[for r in rows: spline(r).points(20)]`"),
             F::OffsetFolds { surface, distance, largest, at } => {
@@ -394,33 +390,25 @@ impl Describe for SurfaceFault {
                     say.length(distance.abs())
                 );
                 let most = say.length(largest.copysign(*distance));
-                Report::new("W664", message)
-                    .at(*surface, "turns back there")
-                    .help(format!("a distance between 0 and {most} does not fold there"))
+                Report::new(message).at(*surface, "turns back there").help(format!("a distance between 0 and {most} does not fold there"))
             }
-            F::PlaneNotFlat { curve, off, at, tolerance } => Report::new(
-                "E655",
-                format!(
-                    "the boundary is not flat: {} is {} off the plane at {}; the tolerance is {}",
-                    say.quoted(*curve, "one curve"),
-                    say.length(*off),
-                    say.point(*at),
-                    say.length(*tolerance)
-                ),
-            )
+            F::PlaneNotFlat { curve, off, at, tolerance } => Report::new(format!(
+                "the boundary is not flat: {} is {} off the plane at {}; the tolerance is {}",
+                say.quoted(*curve, "one curve"),
+                say.length(*off),
+                say.point(*at),
+                say.length(*tolerance)
+            ))
             .at(*curve, "leaves the plane of the others")
             .help("`coons` takes borders that are not flat")
             .edit(Subject::Call, Edit::Instead { of: "plane".to_owned(), put: "coons".to_owned() }),
-            F::EndTrimmed { curve, border, end, length } => Report::new(
-                "N609",
-                format!(
-                    "{} extends {} past {} to {}; the overhang is ignored",
-                    say.quoted(*curve, "a curve"),
-                    say.length(*length),
-                    say.quoted(*border, "the border"),
-                    say.point(*end)
-                ),
-            )
+            F::EndTrimmed { curve, border, end, length } => Report::new(format!(
+                "{} extends {} past {} to {}; the overhang is ignored",
+                say.quoted(*curve, "a curve"),
+                say.length(*length),
+                say.quoted(*border, "the border"),
+                say.point(*end)
+            ))
             .at(*curve, "trimmed to the border"),
         }
     }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{Describe, Report, Say};
+use crate::base::fault::{Code, Describe, Report, Say};
 use crate::base::origin::Origin;
 
 /// Why the walls of two faces do not meet at their edge. Lengths in model units.
@@ -81,24 +81,30 @@ pub enum WallFault {
 }
 
 impl Describe for WallFault {
+    fn code(&self) -> Code {
+        Code(match self {
+            Self::Creased { .. } | Self::Tip { .. } | Self::Pieces { .. } => "E670",
+            Self::Edge { .. } => "E671",
+        })
+    }
+
     fn describe(&self, say: &dyn Say) -> Report {
         match self {
-            Self::Creased { offset, surface, at, angle } => Report::new(
-                "E670",
-                format!("{} has a crease of {} at {}", say.quoted(*surface, "the surface"), say.angle(*angle), say.point(*at)),
-            )
-            .at(*surface, "its normals jump there")
-            .at(*offset, "is not unique at the crease")
-            .help("build two surfaces that meet at the crease, each from the parts of the curves on its side, and offset each"),
+            Self::Creased { offset, surface, at, angle } => {
+                Report::new(format!("{} has a crease of {} at {}", say.quoted(*surface, "the surface"), say.angle(*angle), say.point(*at)))
+                    .at(*surface, "its normals jump there")
+                    .at(*offset, "is not unique at the crease")
+                    .help("build two surfaces that meet at the crease, each from the parts of the curves on its side, and offset each")
+            }
             Self::Tip { offset, surface, at } => {
-                Report::new("E670", format!("{} has a tip at {}", say.quoted(*surface, "the surface"), say.point(*at)))
+                Report::new(format!("{} has a tip at {}", say.quoted(*surface, "the surface"), say.point(*at)))
                     .at(*surface, "its normals have no common limit there")
                     .at(*offset, "is not unique at the tip")
                     .help("cut the tip off first, `trim(s, by: …, keep: …)`")
             }
             Self::Pieces { offset, surface } => {
                 let name = say.quoted(*surface, "the surface");
-                Report::new("E670", format!("{name} is made of triangles, and its curvature jumps between them: its offset has no net"))
+                Report::new(format!("{name} is made of triangles, and its curvature jumps between them: its offset has no net"))
                     .at(*surface, "made of triangles")
                     .at(*offset, "has no smooth offset")
                     .help("build a net first: `grid` through rows of its points")
@@ -112,7 +118,7 @@ impl Describe for WallFault {
 
 fn edge((a, b): (Origin, Origin), at: DVec3, why: WallEdge, say: &dyn Say) -> Report {
     let (x, y, place) = (say.quoted(a, "one face"), say.quoted(b, "another"), say.point(at));
-    let report = |message: String| Report::new("E671", message);
+    let report = |message: String| Report::new(message);
     match why {
         WallEdge::Gap { apart } => {
             report(format!("borders of {x} and {y} are {} apart at {place}: walls join where faces share an edge", say.length(apart)))
