@@ -741,7 +741,7 @@ mod roundings {
     use lofting::geometry::closest;
     use lofting::geometry::construct::fillet::{Treatment, treat};
     use lofting::geometry::curves::curve::Shape;
-    use lofting::geometry::data::fault::CurveFault;
+    use lofting::geometry::data::corner_fault::CornerFault;
 
     /// Numbers from 0 to 1, always the same.
     struct Numbers(u64);
@@ -788,7 +788,7 @@ mod roundings {
             let (radius, rounded) = match round(&corner, radius) {
                 Ok(curve) => (radius, curve),
                 Err(fault) => match fault.of() {
-                    Some(&CurveFault::CornerTooNarrow { largest, .. }) => {
+                    Some(&CornerFault::TooNarrow { largest, .. }) => {
                         refused += 1;
                         assert!(round(&corner, largest * 1.001).is_err(), "{case}: {largest} is not the largest");
                         if largest < 1e-3 {
@@ -796,7 +796,7 @@ mod roundings {
                         }
                         (largest, round(&corner, largest).unwrap_or_else(|_| panic!("{case}: {largest} does not fit")))
                     }
-                    Some(CurveFault::NoCorner { .. }) => continue,
+                    Some(CornerFault::NoCorner { .. }) => continue,
                     _ => panic!("{case}: {fault:?}"),
                 },
             };

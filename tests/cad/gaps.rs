@@ -6,7 +6,7 @@ use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
 use lofting::geometry::construct::build::{arc_through, circle, line};
 use lofting::mesh::Mesh;
-use lofting::model::fault::ModelFault;
+use lofting::model::fault::GluingFault;
 use lofting::network::Chain;
 use lofting::surface::Surface;
 use lofting::surface::blended::plane_face::bounded;
@@ -89,7 +89,7 @@ fn a_gap_as_wide_as_stated_is_glued_and_a_wider_one_is_an_error() {
         assert_eq!(fault.code().0, code, "{gap}: {fault:?}");
     }
     let fault = glued(&two_squares(0.02), 0.01).err().unwrap();
-    let Some(&ModelFault::EdgeMismatch { gap, at, .. }) = fault.of() else { panic!("another fault: {fault:?}") };
+    let Some(&GluingFault::EdgeMismatch { gap, at, .. }) = fault.of() else { panic!("another fault: {fault:?}") };
     assert!((gap - 0.02).abs() < 1e-9 && (at.x - 5.0).abs() < 0.021, "{gap} {at}");
     // Nothing stated: they are two faces.
     assert_eq!(of_surfaces(two_squares(0.02).to_vec(), tolerance(), None).err().unwrap().code().0, "E618");

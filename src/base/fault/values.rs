@@ -206,6 +206,17 @@ fn outside(argument: &'static str, found: String, range: &str) -> Report {
     Report::new(format!("`{argument}` must be {range}, got {found}")).label(Subject::Argument(argument), found)
 }
 
+/// E305 with its arguments; the edit drops the last one.
+fn exclusive(report: Report, arguments: &[&'static str]) -> Report {
+    let report = arguments.iter().enumerate().fold(report, |report, (k, argument)| {
+        report.label(Subject::Argument(argument), if k == 0 { "remove one of these" } else { "or this" })
+    });
+    match arguments.last() {
+        Some(last) => report.edit(Subject::Argument(last), Edit::DropArgument),
+        None => report,
+    }
+}
+
 impl Describe for ValueFault {
     fn code(&self) -> Code {
         Code(match self {
@@ -239,13 +250,7 @@ impl Describe for ValueFault {
                 Report::new(format!("`{function}` needs {what}")).label(Subject::Call, "missing here").help(*example)
             }
             Self::Exclusive { function, what, arguments, example } => {
-                let report = Report::new(format!("`{function}` takes {what}")).help(*example);
-                let labels = arguments.iter().enumerate();
-                labels.fold(report, |r, (i, a)| {
-                    let words = if i == 0 { "remove one of these" } else { "or this" };
-                    let r = r.label(Subject::Argument(a), words);
-                    if i + 1 == arguments.len() { r.edit(Subject::Argument(a), Edit::DropArgument) } else { r }
-                })
+                exclusive(Report::new(format!("`{function}` takes {what}")).help(*example), arguments)
             }
             Self::NoLinks { of } => {
                 let message = format!("{} is construction geometry and has no links", say.quoted(*of, "this curve"));

@@ -1,49 +1,14 @@
-//! Family 6: sweeps of sections along guides.
+//! Guides and paths along which sections are carried.
 
 use glam::DVec3;
 
 use crate::base::fault::{Code, Describe, Report, Say};
 use crate::base::origin::Origin;
-use crate::base::text::{decimals, real};
+use crate::base::text::decimals;
 
-/// What can go wrong when sections travel along guides, or deserves a word. Lengths are model units.
+/// What can go wrong with a guide or path, or deserves a word. Lengths are model units.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SweepFault {
-    /// E631: under the parallel law a section does not lie in a plane parallel to the others.
-    SectionsNotParallel {
-        /// The section whose plane the others are held to.
-        a: Origin,
-        /// The one that leaves its own.
-        b: Origin,
-        /// By which angle, radians.
-        angle: f64,
-        /// By how much at most.
-        off: f64,
-        /// Where.
-        at: DVec3,
-    },
-    /// E632: under the rotational law a section does not lie in a half-plane of the axis.
-    AxisOffSection {
-        /// The section.
-        section: Origin,
-        /// How far its point is off.
-        off: f64,
-        /// That point.
-        at: DVec3,
-    },
-    /// E633: under the normal law a section is not normal to the main guide.
-    SectionNotNormal {
-        /// The section.
-        section: Origin,
-        /// The main guide.
-        guide: Origin,
-        /// By which angle, radians.
-        angle: f64,
-        /// How far off the normal plane.
-        off: f64,
-        /// Where.
-        at: DVec3,
-    },
     /// E634: a guide does not reach the plane of a station.
     GuideMissesStation {
         /// The guide.
@@ -88,26 +53,6 @@ pub enum SweepFault {
         /// The new end.
         end: DVec3,
     },
-    /// E640: a section does not touch a guide.
-    DifferentGuides {
-        /// The section.
-        section: Origin,
-        /// The guide.
-        guide: Origin,
-        /// Their distance.
-        gap: f64,
-        /// Where, on the section.
-        at: DVec3,
-    },
-    /// W644: a section was scaled by much to touch its guides.
-    SectionScaled {
-        /// The section.
-        section: Origin,
-        /// The factor.
-        scale: f64,
-        /// The station.
-        at: DVec3,
-    },
     /// E636: a guide or a path turns back on itself, or has no direction.
     GuideCusp {
         /// The guide.
@@ -146,15 +91,10 @@ pub enum SweepFault {
 impl Describe for SweepFault {
     fn code(&self) -> Code {
         Code(match self {
-            Self::SectionsNotParallel { .. } => "E631",
-            Self::AxisOffSection { .. } => "E632",
-            Self::SectionNotNormal { .. } => "E633",
             Self::GuideMissesStation { .. } => "E634",
             Self::GuideDoublesBack { .. } => "E635",
             Self::MainGuideOnAxis { .. } => "E637",
             Self::GuideExtended { .. } => "N638",
-            Self::DifferentGuides { .. } => "E640",
-            Self::SectionScaled { .. } => "W644",
             Self::GuideCusp { .. } => "E636",
             Self::BentRun { .. } => "E306",
             Self::SelfIntersects { .. } => "W639",
@@ -162,10 +102,8 @@ impl Describe for SweepFault {
     }
 
     fn describe(&self, say: &dyn Say) -> Report {
-        use SweepFault as F;
         match self {
-            F::SectionsNotParallel { .. } | F::AxisOffSection { .. } | F::SectionNotNormal { .. } => describe_section(self, say),
-            F::GuideMissesStation { guide, law, station, at, miss, nearest } => Report::new(format!(
+            Self::GuideMissesStation { guide, law, station, at, miss, nearest } => Report::new(format!(
                 "{} does not reach the station at {}% of the main guide, {}: under the {law} law it stays {} off, nearest at {}",
                 say.quoted(*guide, "a guide"),
                 decimals(100.0 * station, 1),
@@ -175,14 +113,14 @@ impl Describe for SweepFault {
             ))
             .at(*guide, "too short, even extended by a quarter at each end")
             .help("draw this guide as far as the main guide goes, or cut the main guide: `c[A..B]`"),
-            F::GuideDoublesBack { guide, law, at } => Report::new(format!(
+            Self::GuideDoublesBack { guide, law, at } => Report::new(format!(
                 "{} runs back at {}: under the {law} law a section would pass there twice",
                 say.quoted(*guide, "a guide"),
                 say.point(*at)
             ))
             .at(*guide, "turns back here")
             .help("take the run of it that goes one way, `c[A..B]`, or another `law:`"),
-            F::MainGuideOnAxis { guide, at, off } => Report::new(format!(
+            Self::MainGuideOnAxis { guide, at, off } => Report::new(format!(
                 "{} is {} from the axis at {}: no half-plane goes through it there",
                 say.quoted(*guide, "the main guide"),
                 say.length(*off),
@@ -190,7 +128,7 @@ impl Describe for SweepFault {
             ))
             .at(*guide, "meets the axis")
             .help("list another guide first, one that does not meet the axis"),
-            F::GuideExtended { guide, length, share, end } => Report::new(format!(
+            Self::GuideExtended { guide, length, share, end } => Report::new(format!(
                 "{} was extended by {} ({}% of its length), to {}, so that it reaches every station",
                 say.quoted(*guide, "a guide"),
                 say.length(*length),
@@ -198,25 +136,7 @@ impl Describe for SweepFault {
                 say.point(*end)
             ))
             .at(*guide, "extrapolated at its end"),
-            F::DifferentGuides { section, guide, gap, at } => Report::new(format!(
-                "{} does not touch {}: they are {} apart at {}",
-                say.quoted(*section, "a section"),
-                say.quoted(*guide, "a guide"),
-                say.length(*gap),
-                say.point(*at)
-            ))
-            .at(*section, "must touch every guide")
-            .at(*guide, "is not touched")
-            .help("draw one of them through a point of the other, or leave this guide out of `guides:`"),
-            F::SectionScaled { section, scale, at } => Report::new(format!(
-                "{} is scaled by {} to touch its guides at {}",
-                say.quoted(*section, "a section"),
-                few(*scale),
-                say.point(*at)
-            ))
-            .at(*section, "the nearest section to that station")
-            .help("add a section there"),
-            F::GuideCusp { guide, at, fraction, still } => {
+            Self::GuideCusp { guide, at, fraction, still } => {
                 let what = if *still { "has unbounded curvature" } else { "turns back on itself" };
                 let (which, share) = (say.quoted(*guide, "the path"), decimals(100.0 * fraction, 1));
                 Report::new(format!("{which} {what} at {}, {share}% of its length", say.point(*at)))
@@ -230,7 +150,7 @@ impl Describe for SweepFault {
                         "take the runs before and after it, `c[0..P]` and `c[P..1]`, or replace the cusp by a bend"
                     })
             }
-            F::BentRun { path, at, fraction } => Report::new(format!(
+            Self::BentRun { path, at, fraction } => Report::new(format!(
                 "{} is curved beside its corner at {}, {}% of its length: a mitre needs straight runs there",
                 say.quoted(*path, "the path"),
                 say.point(*at),
@@ -238,7 +158,7 @@ impl Describe for SweepFault {
             ))
             .at(*path, "runs beside a mitred corner must be straight")
             .help("`corner: round` turns the profile about the corner"),
-            F::SelfIntersects { surface, path, at, reach, radius } => {
+            Self::SelfIntersects { surface, path, at, reach, radius } => {
                 let why = match radius {
                     Some(radius) => {
                         format!("it reaches {} from a path that bends with a radius of {} there", say.length(*reach), say.length(*radius))
@@ -250,58 +170,5 @@ impl Describe for SweepFault {
                     .help("draw the path with wider bends, or a smaller section")
             }
         }
-    }
-}
-
-/// A factor with three digits that count.
-fn few(x: f64) -> String {
-    real(format!("{x:.2e}").parse().unwrap_or(x))
-}
-
-/// E631–E633: what a law asks of sections.
-fn describe_section(fault: &SweepFault, say: &dyn Say) -> Report {
-    use SweepFault as F;
-    match fault {
-        F::SectionsNotParallel { a, b, angle, off, at } if a == b => Report::new(format!(
-            "{} is not flat: at {} it is {} ({}) off its plane",
-            say.quoted(*a, "a section"),
-            say.point(*at),
-            say.length(*off),
-            say.angle(*angle)
-        ))
-        .at(*a, "leaves its plane")
-        .help("`law: synchronized` takes sections that are not flat"),
-        F::SectionsNotParallel { a, b, angle, off, at } => Report::new(format!(
-            "{} and {} are not parallel: the second is {} off, {} at {}",
-            say.quoted(*a, "a section"),
-            say.quoted(*b, "another one"),
-            say.angle(*angle),
-            say.length(*off),
-            say.point(*at)
-        ))
-        .at(*b, "not parallel")
-        .at(*a, "to this section")
-        .help("draw both in parallel planes, or take `law: rotational` or `law: synchronized`"),
-        F::AxisOffSection { section, off, at } => Report::new(format!(
-            "{} does not lie in a half-plane of the axis: it is {} off at {}",
-            say.quoted(*section, "a section"),
-            say.length(*off),
-            say.point(*at)
-        ))
-        .at(*section, "its plane misses the axis, or it crosses the axis")
-        .help("draw the section in a plane through `axis:`, on one side of it"),
-        F::SectionNotNormal { section, guide, angle, off, at } => Report::new(format!(
-            "{} is not normal to {}: {} off, {} at {}",
-            say.quoted(*section, "a section"),
-            say.quoted(*guide, "the main guide"),
-            say.angle(*angle),
-            say.length(*off),
-            say.point(*at)
-        ))
-        .at(*section, "must stand at right angles")
-        .at(*guide, "to this guide")
-        .help("turn the section about the point where it touches the guide, or take another `law:`"),
-        // Answered by the table above.
-        _ => Report::new("a fault that another table has words for"),
     }
 }

@@ -1,4 +1,4 @@
-//! Family 6: nets of profiles and guides.
+//! Nets of profiles and guides, and sections that coincide.
 
 use glam::DVec3;
 
@@ -50,47 +50,6 @@ pub enum NetFault {
         /// They are the first and the last one of a closed skin.
         closing: bool,
     },
-    /// N677: the curves of a net miss each other within what is allowed.
-    Gap {
-        /// The surface.
-        surface: Origin,
-        /// The curve along u of the pair that is farthest apart.
-        profile: Origin,
-        /// The curve along v.
-        guide: Origin,
-        /// How far apart they are.
-        gap: f64,
-        /// Between the two.
-        at: DVec3,
-        /// How many pairs miss each other by more than the model's tolerance.
-        pairs: usize,
-    },
-    /// N677: a skin keeps to its sections within what is allowed.
-    Smoothed {
-        /// The surface.
-        surface: Origin,
-        /// The section that it leaves most.
-        section: Origin,
-        /// By how much.
-        off: f64,
-        /// Where, on the section.
-        at: DVec3,
-        /// Spans across.
-        spans: usize,
-        /// Spans of the skin through all sections.
-        given: usize,
-    },
-    /// N677: a B-spline stands for a surface that is none.
-    AsNet {
-        /// The B-spline.
-        net: Origin,
-        /// The surface.
-        surface: Origin,
-        /// How far it is off at most.
-        off: f64,
-        /// Whether that is proved; else it is the most at sampled places.
-        proved: bool,
-    },
     /// E643: a curve meets the other family in an order of its own.
     Order {
         /// The curve.
@@ -113,7 +72,6 @@ impl Describe for NetFault {
         Code(match self {
             Self::Incomplete { .. } => "E641",
             Self::Cross { .. } | Self::OneSection { .. } => "E642",
-            Self::Gap { .. } | Self::Smoothed { .. } | Self::AsNet { .. } => "N677",
             Self::Order { .. } => "E643",
         })
     }
@@ -162,38 +120,6 @@ impl Describe for NetFault {
             } else {
                 "leave one of them out"
             }),
-            Self::Gap { surface, profile, guide, gap, at, pairs } => Report::new(format!(
-                "{} and {} miss each other by {} at {}; {} lies between them",
-                say.quoted(*profile, "a profile"),
-                say.quoted(*guide, "a guide"),
-                say.length(*gap),
-                say.point(*at),
-                say.quoted(*surface, "the surface")
-            ))
-            .at(*profile, "this profile")
-            .at(*guide, "misses this guide")
-            .note(match pairs {
-                1 => "all others meet".to_owned(),
-                n => format!("{n} pairs of the net miss each other, this one most"),
-            }),
-            Self::Smoothed { surface, section, off, at, spans, given } => Report::new(format!(
-                "{} deviates from {} by {} at {}, the most of all sections",
-                say.quoted(*surface, "the surface"),
-                say.quoted(*section, "a section"),
-                say.length(*off),
-                say.point(*at)
-            ))
-            .at(*section, "largest deviation")
-            .note(match spans {
-                1 => format!("one span across; through all sections there would be {given}"),
-                n => format!("{n} spans across; through all sections there would be {given}"),
-            }),
-            Self::AsNet { net, surface, off, proved } => Report::new({
-                let (net, surface, off) = (say.quoted(*net, "the net"), say.quoted(*surface, "its surface"), say.length(*off));
-                let bound = if *proved { "nowhere" } else { "at no sampled place" };
-                format!("{net} is {bound} farther than {off} from {surface}")
-            })
-            .at(*net, "a B-spline approximation"),
             Self::Order { curve, guide, a, b, first, second } => Report::new(format!(
                 "{} meets the {} in another order than the others: {} at {}, {} at {}",
                 say.quoted(*curve, family(*guide)),
