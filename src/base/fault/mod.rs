@@ -104,6 +104,11 @@ impl Report {
         self.label(Subject::Entity(origin), text)
     }
 
+    /// Adds labels on the expressions of two entities that are alike: "this curve" and "and this one".
+    pub fn both(self, a: Origin, b: Origin, text: &'static str) -> Self {
+        self.at(a, text).at(b, "and this one")
+    }
+
     /// Sets the help.
     pub fn help(mut self, text: impl Into<String>) -> Self {
         self.help = Some(text.into());
@@ -174,6 +179,20 @@ pub trait Describe {
     /// Sentence, labels and help.
     fn describe(&self, say: &dyn Say) -> Report;
 }
+
+/// The table of codes of a family, each variant with its own: `codes! { Open "E502", Nested "E662" }`. Behind a semicolon stand
+/// variants whose code depends on what they hold.
+macro_rules! codes {
+    ($($variant:ident $code:literal),+ $(; $($pattern:pat => $chosen:expr),+)?) => {
+        fn code(&self) -> $crate::base::fault::Code {
+            $crate::base::fault::Code(match self {
+                $(Self::$variant { .. } => $code,)+
+                $($($pattern => $chosen,)+)?
+            })
+        }
+    };
+}
+pub(crate) use codes;
 
 /// A fault of a family, whichever it is; every enumeration that can describe its variants is one.
 pub trait Family: Describe + Any + fmt::Debug + Send + Sync {

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Code, Describe, Edit, Report, Say, Subject};
+use super::{Describe, Edit, Report, Say, Subject, codes};
 use crate::base::origin::Origin;
 use crate::base::text::decimals;
 
@@ -218,21 +218,11 @@ fn exclusive(report: Report, arguments: &[&'static str]) -> Report {
 }
 
 impl Describe for ValueFault {
-    fn code(&self) -> Code {
-        Code(match self {
-            Self::OutsideRange { .. } | Self::LengthOutside { .. } | Self::NotItsPlane { .. } | Self::NotAcross { .. } => "E306",
-            Self::Missing { .. } => "E301",
-            Self::Exclusive { .. } => "E305",
-            Self::NoLinks { .. } | Self::NoFaces { .. } | Self::WrongKind { .. } | Self::Mixed { .. } => "E211",
-            Self::NotOneEdge { .. } => "E215",
-            Self::NothingSelected { .. } => "W728",
-            Self::NotMeshed { .. } => "W224",
-            Self::OfNothing { .. } => "W729",
-            Self::Raised { .. } => "E903",
-            Self::NotInThisVersion { .. } => "E230",
-            Self::Work | Self::StageWork { .. } | Self::RowWork { .. } | Self::Limit { .. } => "E217",
-            Self::LooseBox { .. } => "W227",
-        })
+    codes! {
+        OutsideRange "E306", LengthOutside "E306", NotItsPlane "E306", NotAcross "E306", Missing "E301", Exclusive "E305",
+        NoLinks "E211", NoFaces "E211", WrongKind "E211", Mixed "E211", NotOneEdge "E215", NothingSelected "W728",
+        NotMeshed "W224", OfNothing "W729", Raised "E903", NotInThisVersion "E230", Work "E217", StageWork "E217", RowWork "E217",
+        Limit "E217", LooseBox "W227"
     }
 
     fn describe(&self, say: &dyn Say) -> Report {

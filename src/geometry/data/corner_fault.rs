@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::base::fault::quantities::typed;
-use crate::base::fault::{Code, Describe, Edit, Report, Say, Subject};
+use crate::base::fault::{Describe, Edit, Report, Say, Subject, codes};
 use crate::base::math;
 use crate::base::origin::Origin;
 use crate::base::tolerance::NEAREST;
@@ -45,13 +45,7 @@ pub enum CornerFault {
 }
 
 impl Describe for CornerFault {
-    fn code(&self) -> Code {
-        Code(match self {
-            Self::TooNarrow { .. } => "E414",
-            Self::NoCorner { .. } => "E415",
-            Self::NotFlat { .. } => "E416",
-        })
-    }
+    codes! { TooNarrow "E414", NoCorner "E415", NotFlat "E416" }
 
     fn describe(&self, say: &dyn Say) -> Report {
         match self {

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{Code, Describe, Edit, Report, Say, Subject};
+use crate::base::fault::{Describe, Edit, Report, Say, Subject, codes};
 use crate::base::origin::Origin;
 use crate::base::text::real;
 
@@ -168,22 +168,9 @@ pub enum CurveFault {
 }
 
 impl Describe for CurveFault {
-    fn code(&self) -> Code {
-        Code(match self {
-            Self::ZeroLength { .. } => "E401",
-            Self::TooFewPoints { .. } => "E402",
-            Self::DuplicatePoints { .. } => "E403",
-            Self::Collinear { .. } => "E404",
-            Self::Rho { .. } => "E405",
-            Self::Knots { .. } => "E406",
-            Self::Weight { .. } => "E407",
-            Self::NonFinite { .. } => "E408",
-            Self::ZeroDirection { .. } => "E409",
-            Self::LengthStalled { .. } => "E410",
-            Self::ZeroAngle { .. } => "E411",
-            Self::AngleTooLarge { .. } => "E412",
-            Self::NotConverged { .. } => "E413",
-        })
+    codes! {
+        ZeroLength "E401", TooFewPoints "E402", DuplicatePoints "E403", Collinear "E404", Rho "E405", Knots "E406", Weight "E407",
+        NonFinite "E408", ZeroDirection "E409", LengthStalled "E410", ZeroAngle "E411", AngleTooLarge "E412", NotConverged "E413"
     }
 
     fn describe(&self, say: &dyn Say) -> Report {

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{Code, Describe, Report, Say};
+use crate::base::fault::{Describe, Report, Say, codes};
 use crate::base::origin::Origin;
 
 /// How two faces touch that share no edge there.
@@ -61,12 +61,7 @@ pub enum ContactFault {
 }
 
 impl Describe for ContactFault {
-    fn code(&self) -> Code {
-        Code(match self {
-            Self::ImprintOverlap { .. } => "E666",
-            Self::FacesTouch { .. } => "W667",
-        })
-    }
+    codes! { ImprintOverlap "E666", FacesTouch "W667" }
 
     fn describe(&self, say: &dyn Say) -> Report {
         match self {
@@ -75,8 +70,7 @@ impl Describe for ContactFault {
                 format!("{one} and {other} overlap at {}: the common region would be meshed twice", say.point(*at))
             })
             .at(*imprint, "joins faces along lines")
-            .at(*a, "this face")
-            .at(*b, "and this one")
+            .both(*a, *b, "this face")
             .help(match pieces(names) {
                 Some(pieces) => format!("`mesh m of {pieces}` meshes the common region once"),
                 None => "mesh the pieces that `imprint` makes of them: the common region is one of them".to_owned(),

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{Code, Describe, Report, Say};
+use crate::base::fault::{Describe, Report, Say, codes};
 use crate::base::origin::Origin;
 
 /// What can go wrong where borders are glued, or deserves a word. Lengths are model units.
@@ -59,13 +59,7 @@ pub enum GluingFault {
 }
 
 impl Describe for GluingFault {
-    fn code(&self) -> Code {
-        Code(match self {
-            Self::Glued { .. } => "N513",
-            Self::EdgeMismatch { .. } => "E711",
-            Self::EdgeTooShort { .. } | Self::FaceTooThin { .. } => "N712",
-        })
-    }
+    codes! { Glued "N513", EdgeMismatch "E711", EdgeTooShort "N712", FaceTooThin "N712" }
 
     fn describe(&self, say: &dyn Say) -> Report {
         match self {
@@ -86,8 +80,7 @@ impl Describe for GluingFault {
                 say.point(*at)
             ))
             .at(stated.1, format!("edges within {} are glued", say.length(stated.0)))
-            .at(*a, "this border")
-            .at(*b, "and this one")
+            .both(*a, *b, "this border")
             .help("set a larger `snap`, or build both on the same curve"),
             Self::EdgeTooShort { of, length, at, more } => Report::new(format!(
                 "an edge of {} only {} long at {} became a corner{}",

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{Code, Describe, Report, Say};
+use crate::base::fault::{Describe, Report, Say, codes};
 use crate::base::origin::Origin;
 
 /// What can go wrong with a shell, or deserves a word. Lengths are model units.
@@ -62,15 +62,7 @@ pub enum ShellFault {
 }
 
 impl Describe for ShellFault {
-    fn code(&self) -> Code {
-        Code(match self {
-            Self::Open { .. } => "N615",
-            Self::NotOrientable { .. } => "E616",
-            Self::NonManifold { .. } => "E617",
-            Self::NotAdjacent { .. } => "E618",
-            Self::NotClosed { .. } => "E656",
-        })
-    }
+    codes! { Open "N615", NotOrientable "E616", NonManifold "E617", NotAdjacent "E618", NotClosed "E656" }
 
     fn describe(&self, say: &dyn Say) -> Report {
         match self {
@@ -111,8 +103,7 @@ impl Describe for ShellFault {
                 say.length(*gap),
                 say.point(*at)
             ))
-            .at(*a, "this face")
-            .at(*b, "and this one"),
+            .both(*a, *b, "this face"),
             Self::NotClosed { shell, wanted, free } => {
                 if free.is_empty() {
                     let shell_name = say.quoted(*shell, "the shell");

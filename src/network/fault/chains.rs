@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::base::fault::quantities::{round_above, round_down, tolerance_note, typed};
-use crate::base::fault::{Code, Describe, Edit, Report, Say, Subject};
+use crate::base::fault::{Describe, Edit, Report, Say, Subject, codes};
 use crate::base::origin::Origin;
 use crate::network::fault::CurveEnd;
 
@@ -68,15 +68,7 @@ pub enum ChainFault {
 }
 
 impl Describe for ChainFault {
-    fn code(&self) -> Code {
-        Code(match self {
-            Self::Broken { .. } => "E503",
-            Self::Repeats { .. } => "E504",
-            Self::Ambiguous { .. } => "E505",
-            Self::LoopThin { .. } => "E611",
-            Self::NoLength { .. } => "E401",
-        })
-    }
+    codes! { Broken "E503", Repeats "E504", Ambiguous "E505", LoopThin "E611", NoLength "E401" }
 
     fn describe(&self, say: &dyn Say) -> Report {
         match self {

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::base::fault::quantities::{round_above, tolerance_note, typed};
-use crate::base::fault::{Code, Describe, Edit, Report, Say, Subject};
+use crate::base::fault::{Describe, Edit, Report, Say, Subject, codes};
 use crate::base::origin::Origin;
 use crate::base::tolerance::SNAP_SHARE;
 
@@ -87,20 +87,9 @@ impl CurveEnd {
 }
 
 impl Describe for EndFault {
-    fn code(&self) -> Code {
-        Code(match self {
-            Self::EndsMiss { .. } => "E501",
-            Self::BoundaryOpen { .. } => "E502",
-            Self::SnapFixed { .. } => "E511",
-            Self::Snapped { end, to, length, .. } => {
-                if moves_far(end.at.distance(*to), *length) {
-                    "W223"
-                } else {
-                    "N513"
-                }
-            }
-            Self::NearMiss { .. } => "W514",
-        })
+    codes! {
+        EndsMiss "E501", BoundaryOpen "E502", SnapFixed "E511", NearMiss "W514";
+        Self::Snapped { end, to, length, .. } => if moves_far(end.at.distance(*to), *length) { "W223" } else { "N513" }
     }
 
     fn describe(&self, say: &dyn Say) -> Report {

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::base::fault::quantities::typed;
-use crate::base::fault::{Code, Describe, Edit, Report, Say, Subject};
+use crate::base::fault::{Describe, Edit, Report, Say, Subject, codes};
 use crate::base::origin::Origin;
 
 /// What can go wrong with the graph of nodes and links, or deserves a word. Lengths and points are in model units.
@@ -43,13 +43,7 @@ pub enum GraphFault {
 }
 
 impl Describe for GraphFault {
-    fn code(&self) -> Code {
-        Code(match self {
-            Self::ClusterAmbiguous { .. } => "E506",
-            Self::SharedRun { .. } => "N512",
-            Self::InUse { .. } => "E510",
-        })
-    }
+    codes! { ClusterAmbiguous "E506", SharedRun "N512", InUse "E510" }
 
     fn describe(&self, say: &dyn Say) -> Report {
         match self {

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::no_flow::{self, NoFlow};
-use crate::base::fault::{Code, Describe, Report, Say};
+use crate::base::fault::{Describe, Report, Say, codes};
 use crate::base::origin::Origin;
 
 /// Why curves make no grid. Lengths are model units.
@@ -67,15 +67,7 @@ pub enum GridFault {
 }
 
 impl Describe for GridFault {
-    fn code(&self) -> Code {
-        Code(match self {
-            Self::FlowUnknown { .. } => "E601",
-            Self::GridIncomplete { .. } => "E602",
-            Self::GridDouble { .. } => "E603",
-            Self::GridNotMonotone { .. } => "E604",
-            Self::FamilyCrosses { .. } => "E605",
-        })
-    }
+    codes! { FlowUnknown "E601", GridIncomplete "E602", GridDouble "E603", GridNotMonotone "E604", FamilyCrosses "E605" }
 
     fn describe(&self, say: &dyn Say) -> Report {
         use GridFault as F;
@@ -96,8 +88,7 @@ impl Describe for GridFault {
                 let (here, there) = say.pair(*first, *second);
                 let (one, other) = (say.quoted(*a, "one curve"), say.quoted(*b, "another one"));
                 Report::new(format!("{one} and {other} meet twice, at {here} and at {there}"))
-                    .at(*a, "this curve")
-                    .at(*b, "and this one")
+                    .both(*a, *b, "this curve")
                     .help("take the run with one of the two meetings: `c[A..B]`")
             }
             F::GridNotMonotone { curve, a, b, first, second } => {

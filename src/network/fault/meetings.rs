@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::base::fault::quantities::{round_up, tolerance_note, typed};
-use crate::base::fault::{Code, Describe, Edit, Report, Say, Subject};
+use crate::base::fault::{Describe, Edit, Report, Say, Subject, codes};
 use crate::base::origin::Origin;
 use crate::base::text::decimals;
 
@@ -53,13 +53,7 @@ pub enum MeetingFault {
 }
 
 impl Describe for MeetingFault {
-    fn code(&self) -> Code {
-        Code(match self {
-            Self::NoMeeting { .. } | Self::PointOff { .. } => "E507",
-            Self::SeveralMeetings { .. } => "E508",
-            Self::SharesRun { .. } => "E509",
-        })
-    }
+    codes! { NoMeeting "E507", PointOff "E507", SeveralMeetings "E508", SharesRun "E509" }
 
     fn describe(&self, say: &dyn Say) -> Report {
         match self {
@@ -83,8 +77,7 @@ fn no_meeting(a: (Origin, DVec3), b: (Origin, DVec3), (near, tolerance): (bool, 
     let (one, other) = (say.quoted(a.0, "one curve"), say.quoted(b.0, "the other"));
     let (here, there) = say.pair(a.1, b.1);
     Report::new(format!("{one} and {other} do not meet: they come closest at {here} and {there}, {} apart", say.length(gap)))
-        .at(a.0, "this curve")
-        .at(b.0, "and this one")
+        .both(a.0, b.0, "this curve")
         .note(format!("{}{wider}", tolerance_note(say, tolerance)))
 }
 
@@ -102,8 +95,7 @@ fn several_meetings(a: Origin, b: Origin, candidates: &[(DVec3, f64)], say: &dyn
         candidates.len(),
         list.join(", ")
     ))
-    .at(a, "this curve")
-    .at(b, "and this one");
+    .both(a, b, "this curve");
     if name_a.is_empty() || name_b.is_empty() {
         report.help("pick one: `meet(a, b)[0]`, or `nearest(meet(a, b), P)`")
     } else {
@@ -126,8 +118,7 @@ fn shares_run(a: Origin, b: Origin, runs: &[(DVec3, DVec3)], say: &dyn Say) -> R
         say.quoted(b, "the other"),
         list.join(" and ")
     ))
-    .at(a, "this curve")
-    .at(b, "and this one")
+    .both(a, b, "this curve")
     .help("`meet(a, b)` lists the ends of the run")
 }
 

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::base::fault::quantities::{round_above, typed};
-use crate::base::fault::{Code, Describe, Report, Say};
+use crate::base::fault::{Describe, Report, Say, codes};
 use crate::base::origin::Origin;
 
 /// What can go wrong with a net of two families. Lengths and points are in model units.
@@ -68,13 +68,7 @@ pub enum NetFault {
 }
 
 impl Describe for NetFault {
-    fn code(&self) -> Code {
-        Code(match self {
-            Self::Incomplete { .. } => "E641",
-            Self::Cross { .. } | Self::OneSection { .. } => "E642",
-            Self::Order { .. } => "E643",
-        })
-    }
+    codes! { Incomplete "E641", Cross "E642", OneSection "E642", Order "E643" }
 
     fn describe(&self, say: &dyn Say) -> Report {
         let family = |guide: bool| if guide { "a guide" } else { "a profile" };

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{Code, Describe, Edit, Report, Say, Subject};
+use crate::base::fault::{Describe, Edit, Report, Say, Subject, codes};
 use crate::base::origin::Origin;
 use crate::base::text::real;
 
@@ -78,14 +78,9 @@ pub enum BorderFault {
 }
 
 impl Describe for BorderFault {
-    fn code(&self) -> Code {
-        Code(match self {
-            Self::EndTrimmed { .. } => "N609",
-            Self::LoopSelfIntersects { .. } => "E611",
-            Self::LoopGoesRound { .. } => "E612",
-            Self::LoopOutsideSurface { .. } | Self::LoopOutsideParameters { .. } => "E613",
-            Self::PlaneNotFlat { .. } => "E655",
-        })
+    codes! {
+        EndTrimmed "N609", LoopSelfIntersects "E611", LoopGoesRound "E612", LoopOutsideSurface "E613",
+        LoopOutsideParameters "E613", PlaneNotFlat "E655"
     }
 
     fn describe(&self, say: &dyn Say) -> Report {

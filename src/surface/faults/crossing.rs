@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::base::fault::quantities::tolerance_note;
-use crate::base::fault::{Code, Describe, Report, Say};
+use crate::base::fault::{Describe, Report, Say, codes};
 use crate::base::origin::Origin;
 
 /// What can go wrong where surfaces meet. Lengths are model units.
@@ -55,20 +55,9 @@ pub enum CrossingFault {
 }
 
 impl Describe for CrossingFault {
-    fn code(&self) -> Code {
-        Code(match self {
-            Self::NoCurve { .. } => "E507",
-            Self::SeveralCurves { .. } => "E508",
-            Self::NotOneSection { curves, .. } => {
-                if curves.is_empty() {
-                    "E507"
-                } else {
-                    "E508"
-                }
-            }
-            Self::RunAlong { .. } => "E657",
-            Self::WithoutEnd { .. } => "E658",
-        })
+    codes! {
+        NoCurve "E507", SeveralCurves "E508", RunAlong "E657", WithoutEnd "E658";
+        Self::NotOneSection { curves, .. } => if curves.is_empty() { "E507" } else { "E508" }
     }
 
     fn describe(&self, say: &dyn Say) -> Report {
@@ -79,15 +68,14 @@ impl Describe for CrossingFault {
                     Some(at) => format!("{x} and {y} meet in no curve: they touch at {}", say.point(*at)),
                     None => format!("{x} and {y} do not meet"),
                 };
-                let report = Report::new(message).at(*a, "this surface").at(*b, "and this one");
+                let report = Report::new(message).both(*a, *b, "this surface");
                 report.note(tolerance_note(say, *tolerance))
             }
             Self::SeveralCurves { a, b, curves } => {
                 let list = listed(curves, say);
                 let (x, y) = (say.quoted(*a, "one surface"), say.quoted(*b, "the other"));
                 Report::new(format!("{x} and {y} meet in {} curves: {list}", curves.len()))
-                    .at(*a, "this surface")
-                    .at(*b, "and this one")
+                    .both(*a, *b, "this surface")
                     .help("`meet(a, b)` is the list of all of them")
             }
             Self::NotOneSection { of, curves } if curves.is_empty() => {
@@ -103,8 +91,7 @@ impl Describe for CrossingFault {
                 say.quoted(*b, "the other"),
                 say.point(*at)
             ))
-            .at(*a, "this surface")
-            .at(*b, "and this one")
+            .both(*a, *b, "this surface")
             .note(format!("they are nearer than the model's tolerance, {}, and almost parallel there", say.length(*tolerance))),
             Self::WithoutEnd { of } => Report::new("two unbounded planes meet in an infinite line")
                 .at(*of, "a curve has a finite length")

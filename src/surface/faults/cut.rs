@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::base::fault::quantities::tolerance_note;
-use crate::base::fault::{Code, Describe, Report, Say};
+use crate::base::fault::{Describe, Report, Say, codes};
 use crate::base::origin::Origin;
 
 /// What can go wrong where a surface is cut. Lengths are model units.
@@ -80,13 +80,8 @@ pub enum CutFault {
 }
 
 impl Describe for CutFault {
-    fn code(&self) -> Code {
-        Code(match self {
-            Self::CutOpen { .. } => "E659",
-            Self::NothingParted { .. } | Self::CutsTooNear { .. } | Self::PartsNotWhole { .. } => "E721",
-            Self::NotDivided { .. } => "E999",
-            Self::KeepOff { .. } => "E660",
-        })
+    codes! {
+        CutOpen "E659", NothingParted "E721", CutsTooNear "E721", PartsNotWhole "E721", NotDivided "E999", KeepOff "E660"
     }
 
     fn describe(&self, say: &dyn Say) -> Report {

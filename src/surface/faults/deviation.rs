@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{Code, Describe, Report, Say};
+use crate::base::fault::{Describe, Report, Say, codes};
 use crate::base::origin::Origin;
 
 /// N677: a surface deviates within what is allowed. Lengths and points are in model units.
@@ -52,11 +52,7 @@ pub enum DeviationFault {
 }
 
 impl Describe for DeviationFault {
-    fn code(&self) -> Code {
-        Code(match self {
-            Self::Gap { .. } | Self::Smoothed { .. } | Self::AsNet { .. } => "N677",
-        })
-    }
+    codes! { Gap "N677", Smoothed "N677", AsNet "N677" }
 
     fn describe(&self, say: &dyn Say) -> Report {
         match self {

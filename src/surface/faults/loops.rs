@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{Code, Describe, Edit, Report, Say, Subject};
+use crate::base::fault::{Describe, Edit, Report, Say, Subject, codes};
 use crate::base::origin::Origin;
 
 /// What the curves of a loop were given for.
@@ -109,27 +109,10 @@ pub enum LoopFault {
 }
 
 impl Describe for LoopFault {
-    fn code(&self) -> Code {
-        Code(match self {
-            Self::Open { .. } | Self::ClosedAmong { .. } => "E502",
-            Self::Outside { .. } => "E612",
-            Self::Meet { outer, .. } => {
-                if *outer {
-                    "E612"
-                } else {
-                    "E661"
-                }
-            }
-            Self::Repeated { b: (_, earlier), .. } => {
-                if earlier.is_none() {
-                    "E612"
-                } else {
-                    "E661"
-                }
-            }
-            Self::Nested { .. } => "E662",
-            Self::Twice { .. } => "E663",
-        })
+    codes! {
+        Open "E502", ClosedAmong "E502", Outside "E612", Nested "E662", Twice "E663";
+        Self::Meet { outer, .. } => if *outer { "E612" } else { "E661" },
+        Self::Repeated { b: (_, earlier), .. } => if earlier.is_none() { "E612" } else { "E661" }
     }
 
     fn describe(&self, say: &dyn Say) -> Report {

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{Code, Describe, Edit, Report, Say, Subject};
+use crate::base::fault::{Describe, Edit, Report, Say, Subject, codes};
 use crate::base::origin::Origin;
 use crate::base::text::decimals;
 
@@ -48,14 +48,7 @@ pub enum ProfileFault {
 }
 
 impl Describe for ProfileFault {
-    fn code(&self) -> Code {
-        Code(match self {
-            Self::AxisNotStraight { .. } => "E621",
-            Self::GeneratrixOnAxis { .. } => "E622",
-            Self::GeneratrixCrossesAxis { .. } => "E623",
-            Self::SweepDegenerate { .. } => "E624",
-        })
-    }
+    codes! { AxisNotStraight "E621", GeneratrixOnAxis "E622", GeneratrixCrossesAxis "E623", SweepDegenerate "E624" }
 
     fn describe(&self, say: &dyn Say) -> Report {
         match self {

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{Code, Describe, Report, Say, Subject};
+use crate::base::fault::{Describe, Report, Say, Subject, codes};
 use crate::base::origin::Origin;
 
 /// What can go wrong with scattered points, or deserves a word. Lengths and points are in model units.
@@ -66,15 +66,7 @@ pub enum ScatterFault {
 }
 
 impl Describe for ScatterFault {
-    fn code(&self) -> Code {
-        Code(match self {
-            Self::Merged { .. } => "W225",
-            Self::OneLine { .. } => "E665",
-            Self::Over { .. } => "E675",
-            Self::Steep { .. } => "W668",
-            Self::StandsOut { .. } => "W226",
-        })
-    }
+    codes! { Merged "W225", OneLine "E665", Over "E675", Steep "W668", StandsOut "W226" }
 
     fn describe(&self, say: &dyn Say) -> Report {
         let label = |report: Report, text: &str| report.label(Subject::Argument("points"), text);

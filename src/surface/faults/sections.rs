@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{Code, Describe, Report, Say};
+use crate::base::fault::{Describe, Report, Say, codes};
 use crate::base::origin::Origin;
 use crate::base::text::real;
 
@@ -67,15 +67,7 @@ pub enum SectionFault {
 }
 
 impl Describe for SectionFault {
-    fn code(&self) -> Code {
-        Code(match self {
-            Self::NotParallel { .. } => "E631",
-            Self::AxisOff { .. } => "E632",
-            Self::NotNormal { .. } => "E633",
-            Self::MissesGuide { .. } => "E640",
-            Self::Scaled { .. } => "W644",
-        })
-    }
+    codes! { NotParallel "E631", AxisOff "E632", NotNormal "E633", MissesGuide "E640", Scaled "W644" }
 
     fn describe(&self, say: &dyn Say) -> Report {
         match self {

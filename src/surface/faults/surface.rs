@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{Code, Describe, Report, Say};
+use crate::base::fault::{Describe, Report, Say, codes};
 use crate::base::origin::Origin;
 use crate::base::text::decimals;
 
@@ -113,17 +113,9 @@ pub enum SurfaceFault {
 }
 
 impl Describe for SurfaceFault {
-    fn code(&self) -> Code {
-        Code(match self {
-            Self::PatchSingular { .. } => "W606",
-            Self::PatchFolded { .. } => "W607",
-            Self::CrossesItself { .. } => "W669",
-            Self::TransfiniteOscillation { .. } => "N608",
-            Self::SliverPatch { .. } => "W614",
-            Self::GridUneven { .. } => "W651",
-            Self::NoNet { .. } => "E676",
-            Self::OffsetFolds { .. } => "W664",
-        })
+    codes! {
+        PatchSingular "W606", PatchFolded "W607", CrossesItself "W669", TransfiniteOscillation "N608", SliverPatch "W614",
+        GridUneven "W651", NoNet "E676", OffsetFolds "W664"
     }
 
     fn describe(&self, say: &dyn Say) -> Report {

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{Code, Describe, Report, Say};
+use crate::base::fault::{Describe, Report, Say, codes};
 use crate::base::origin::Origin;
 use crate::base::text::decimals;
 
@@ -89,16 +89,9 @@ pub enum SweepFault {
 }
 
 impl Describe for SweepFault {
-    fn code(&self) -> Code {
-        Code(match self {
-            Self::GuideMissesStation { .. } => "E634",
-            Self::GuideDoublesBack { .. } => "E635",
-            Self::MainGuideOnAxis { .. } => "E637",
-            Self::GuideExtended { .. } => "N638",
-            Self::GuideCusp { .. } => "E636",
-            Self::BentRun { .. } => "E306",
-            Self::SelfIntersects { .. } => "W639",
-        })
+    codes! {
+        GuideMissesStation "E634", GuideDoublesBack "E635", MainGuideOnAxis "E637", GuideExtended "N638", GuideCusp "E636",
+        BentRun "E306", SelfIntersects "W639"
     }
 
     fn describe(&self, say: &dyn Say) -> Report {

@@ -1,6 +1,6 @@
 //! Files that cannot be opened.
 
-use crate::base::fault::{Code, Describe, Edit, Report, Say, Subject};
+use crate::base::fault::{Describe, Edit, Report, Say, Subject, codes};
 use crate::base::origin::Origin;
 use crate::base::text::article;
 
@@ -48,14 +48,7 @@ pub enum AccessFault {
 }
 
 impl Describe for AccessFault {
-    fn code(&self) -> Code {
-        Code(match self {
-            Self::CannotRead { .. } => "E801",
-            Self::CannotWrite { .. } => "E808",
-            Self::Outside { .. } => "E802",
-            Self::TooLarge { .. } => "E811",
-        })
-    }
+    codes! { CannotRead "E801", CannotWrite "E808", Outside "E802", TooLarge "E811" }
 
     fn describe(&self, _: &dyn Say) -> Report {
         match self {

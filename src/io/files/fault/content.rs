@@ -1,6 +1,6 @@
 //! What is wrong inside a file that is read.
 
-use crate::base::fault::{Code, Describe, Report, Say};
+use crate::base::fault::{Describe, Report, Say, codes};
 use crate::base::origin::Origin;
 
 /// A place in a data file where it stops making sense.
@@ -91,14 +91,7 @@ impl Malformed {
 }
 
 impl Describe for ContentFault {
-    fn code(&self) -> Code {
-        Code(match self {
-            Self::Malformed { .. } => "E803",
-            Self::Repaired { .. } => "W810",
-            Self::Unusable { .. } => "W726",
-            Self::ImportCycle { .. } => "E809",
-        })
-    }
+    codes! { Malformed "E803", Repaired "W810", Unusable "W726", ImportCycle "E809" }
 
     fn describe(&self, _: &dyn Say) -> Report {
         match self {

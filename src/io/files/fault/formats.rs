@@ -1,6 +1,6 @@
 //! Formats that do not exist or cannot hold what is asked for.
 
-use crate::base::fault::{Code, Describe, Edit, Report, Say, Subject};
+use crate::base::fault::{Describe, Edit, Report, Say, Subject, codes};
 use crate::base::origin::Origin;
 
 /// Why a format cannot be used. Paths are as written in the script.
@@ -36,13 +36,7 @@ pub enum FormatFault {
 }
 
 impl Describe for FormatFault {
-    fn code(&self) -> Code {
-        Code(match self {
-            Self::NoSuchFormat { .. } => "E804",
-            Self::LaterFormat { .. } => "E230",
-            Self::Unsupported { .. } => "E805",
-        })
-    }
+    codes! { NoSuchFormat "E804", LaterFormat "E230", Unsupported "E805" }
 
     fn describe(&self, _: &dyn Say) -> Report {
         match self {

@@ -1,6 +1,6 @@
 //! Outputs: what a file leaves out, files written twice, incomplete parts.
 
-use crate::base::fault::{Code, Describe, Edit, Report, Say, Subject};
+use crate::base::fault::{Describe, Edit, Report, Say, Subject, codes};
 use crate::base::origin::Origin;
 
 /// What can go wrong with an output, or deserves a word. `of` is the export; paths are as written in the script.
@@ -63,16 +63,7 @@ pub enum OutputFault {
 }
 
 impl Describe for OutputFault {
-    fn code(&self) -> Code {
-        Code(match self {
-            Self::LeftOut { .. } => "W806",
-            Self::Renamed { .. } => "W807",
-            Self::SameFile { .. } => "E812",
-            Self::OverInput { .. } => "E813",
-            Self::TooMuchWork { .. } => "E217",
-            Self::Incomplete { .. } => "E904",
-        })
-    }
+    codes! { LeftOut "W806", Renamed "W807", SameFile "E812", OverInput "E813", TooMuchWork "E217", Incomplete "E904" }
 
     fn describe(&self, _: &dyn Say) -> Report {
         match self {

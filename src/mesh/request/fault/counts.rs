@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{Code, Describe, Edit, Report, Say, Subject};
+use crate::base::fault::{Describe, Edit, Report, Say, Subject, codes};
 use crate::base::origin::Origin;
 use crate::mesh::request::fault::MeshLimit;
 
@@ -70,13 +70,7 @@ pub enum CountFault {
 }
 
 impl Describe for CountFault {
-    fn code(&self) -> Code {
-        Code(match self {
-            Self::Differ { .. } | Self::SidesDoNotClose { .. } => "E702",
-            Self::TooCoarse { .. } | Self::TooFew { .. } | Self::BelowLinks { .. } => "E703",
-            Self::Odd { .. } => "E704",
-        })
-    }
+    codes! { Differ "E702", SidesDoNotClose "E702", TooCoarse "E703", TooFew "E703", BelowLinks "E703", Odd "E704" }
 
     fn describe(&self, say: &dyn Say) -> Report {
         match self {

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{Code, Describe, Report, Say};
+use crate::base::fault::{Describe, Report, Say, codes};
 use crate::base::origin::Origin;
 use crate::base::text::decimals;
 
@@ -80,14 +80,7 @@ pub enum ElementFault {
 }
 
 impl Describe for ElementFault {
-    fn code(&self) -> Code {
-        Code(match self {
-            Self::Inverted { .. } => "E715",
-            Self::Folded { .. } => "E718",
-            Self::ClosesTooNear { .. } | Self::FallTogether { .. } => "E720",
-            Self::Unsound { .. } => "E999",
-        })
-    }
+    codes! { Inverted "E715", Folded "E718", ClosesTooNear "E720", FallTogether "E720", Unsound "E999" }
 
     fn describe(&self, say: &dyn Say) -> Report {
         match self {

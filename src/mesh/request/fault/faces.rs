@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{Code, Describe, Edit, Report, Say, Subject};
+use crate::base::fault::{Describe, Edit, Report, Say, Subject, codes};
 use crate::base::origin::Origin;
 
 /// Why a face cannot be meshed as asked for. Lengths are model units.
@@ -63,14 +63,8 @@ pub enum FaceFault {
 }
 
 impl Describe for FaceFault {
-    fn code(&self) -> Code {
-        Code(match self {
-            Self::CannotMap { .. } => "E705",
-            Self::QuadsImpossible { .. } | Self::TrianglesOnly { .. } => "E704",
-            Self::BordersCross { .. } => "E713",
-            Self::TreeTooDeep { .. } => "E716",
-            Self::Empty { .. } => "E714",
-        })
+    codes! {
+        CannotMap "E705", QuadsImpossible "E704", TrianglesOnly "E704", BordersCross "E713", TreeTooDeep "E716", Empty "E714"
     }
 
     fn describe(&self, say: &dyn Say) -> Report {

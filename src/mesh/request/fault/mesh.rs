@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::base::fault::quantities::typed;
-use crate::base::fault::{Code, Describe, Edit, Report, Say, Subject};
+use crate::base::fault::{Describe, Edit, Report, Say, Subject, codes};
 use crate::base::origin::Origin;
 
 /// The setting that makes angles of elements larger.
@@ -131,15 +131,9 @@ pub enum MeshFault {
 }
 
 impl Describe for MeshFault {
-    fn code(&self) -> Code {
-        Code(match self {
-            Self::RuleUnused { .. } => "W701",
-            Self::RuleOverridden { .. } => "W706",
-            Self::TooMany { .. } | Self::TooMuchWork { .. } | Self::TooManySteps { .. } => "E217",
-            Self::SetInPart { .. } => "E672",
-            Self::Sharp { .. } => "W724",
-            Self::Lost { .. } => "W725",
-        })
+    codes! {
+        RuleUnused "W701", RuleOverridden "W706", TooMany "E217", TooMuchWork "E217", TooManySteps "E217", SetInPart "E672",
+        Sharp "W724", Lost "W725"
     }
 
     fn describe(&self, say: &dyn Say) -> Report {

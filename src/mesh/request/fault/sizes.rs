@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{Code, Describe, Report, Say};
+use crate::base::fault::{Describe, Report, Say, codes};
 use crate::base::origin::Origin;
 
 /// A limit of a mesh, by its setting.
@@ -83,12 +83,7 @@ impl std::fmt::Display for MeshLimit {
 }
 
 impl Describe for SizeFault {
-    fn code(&self) -> Code {
-        Code(match self {
-            Self::BelowFloor { .. } | Self::FloorKeeps { .. } => "E707",
-            Self::NotReached { .. } | Self::GapTooWide { .. } => "E703",
-        })
-    }
+    codes! { BelowFloor "E707", FloorKeeps "E707", NotReached "E703", GapTooWide "E703" }
 
     fn describe(&self, say: &dyn Say) -> Report {
         match self {
