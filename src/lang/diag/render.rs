@@ -17,6 +17,9 @@ use crate::lang::diag::diagnostic::{Diagnostic, FileId, Label, Sources};
 use crate::lang::diag::frame::frame;
 use crate::lang::diag::paint::{Paint, shortened};
 
+/// Places of equal reports that are listed.
+const PLACES_SHOWN: usize = 8;
+
 /// All reports of a run: sorted by place, equal ones counted, at most twenty in full and the rest counted.
 pub fn render_all(found: &[Diagnostic], sources: &Sources, colours: bool) -> String {
     let mut sorted: Vec<&Diagnostic> = found.iter().collect();
@@ -81,23 +84,28 @@ fn render_one(diagnostic: &Diagnostic, same: &[&Diagnostic], sources: &Sources, 
     for note in &diagnostic.notes {
         tail(&mut text, &paint.word("note:"), note);
     }
-    let more = diagnostic.more + same.iter().map(|d| 1 + d.more).sum::<usize>();
-    if same.is_empty() && more > 0 {
-        tail(&mut text, &paint.word("note:"), &format!("and {more} more like this one"));
-    }
-    if !same.is_empty() {
-        let mut places: Vec<String> = Vec::new();
-        for other in same.iter().take(8) {
-            let label = other.labels.first();
-            let place = label.and_then(|l| Some((sources.get(l.file)?, sources.place(l.file, l.span.start)?)));
-            places.extend(place.map(|(file, p)| format!("{}:{}:{}", file.name, p.line, p.column)));
-        }
-        let etc = if more > 8 { ", …" } else { "" };
-        let times = if more == 1 { "once more".to_owned() } else { format!("{more} times more") };
-        let colon = if places.is_empty() { "" } else { ": " };
-        tail(&mut text, &paint.word("note:"), &format!("the same {times}{colon}{}{etc}", places.join(", ")));
+    if let Some(words) = further(diagnostic, same, sources) {
+        tail(&mut text, &paint.word("note:"), &words);
     }
     text
+}
+
+/// How many further reports one stands for, and the first places of those elsewhere.
+fn further(diagnostic: &Diagnostic, same: &[&Diagnostic], sources: &Sources) -> Option<String> {
+    let elsewhere: Vec<&&Diagnostic> = same.iter().filter(|d| d.labels.is_empty() || d.place() != diagnostic.place()).collect();
+    let more = diagnostic.more + elsewhere.len() + same.iter().map(|d| d.more).sum::<usize>();
+    let place = |other: &&Diagnostic| {
+        let label = other.labels.first()?;
+        let (file, p) = (sources.get(label.file)?, sources.place(label.file, label.span.start)?);
+        Some(format!("{}:{}:{}", file.name, p.line, p.column))
+    };
+    let places: Vec<String> = elsewhere.into_iter().take(PLACES_SHOWN).filter_map(place).collect();
+    match (more, places.len()) {
+        (0, _) => None,
+        (_, 0) => Some(format!("and {more} more like this one")),
+        (_, all) if all == more => Some(format!("also at {}", places.join(", "))),
+        _ => Some(format!("and {more} more like this one, at {}, …", places.join(", "))),
+    }
 }
 
 /// `help:` or `note:` with its text, further lines set in.
@@ -217,7 +225,9 @@ E901 × check failed
         let shown = render_all(&found, &sources(&text), false);
         assert_eq!(shown.matches("E201 ×").count(), 20);
         assert!(shown.find("message 0") < shown.find("message 2"));
-        assert!(shown.contains("  note: the same once more: hall.loft:2:1\n"));
+        assert!(shown.contains("  note: also at hall.loft:2:1\n"));
+        let again = [one(1, "twice".to_owned()), one(1, "twice".to_owned()).label(FileId(0), at(8, 9), "and there")];
+        assert!(!render_all(&again, &sources(&text), false).contains("note:"), "its own place is no other one");
         let found: Vec<Diagnostic> = (0..25).map(|n| one(n, format!("message {n}"))).collect();
         assert!(render_all(&found, &sources(&text), false).ends_with("\n… and 5 more errors\n"));
     }
@@ -231,9 +241,8 @@ E901 × check failed
         };
         let shown = |found: &[Diagnostic]| render_all(found, &sources(&"a\n".repeat(100)), false);
         assert!(shown(&[one(0, 12_345)]).contains("  note: and 12345 more like this one\n"));
-        assert!(
-            shown(&[one(30, 5), one(31, 3), one(32, 0)]).contains("  note: the same 10 times more: hall.loft:32:1, hall.loft:33:1, …\n")
-        );
+        let several = shown(&[one(30, 5), one(31, 3), one(32, 0)]);
+        assert!(several.contains("  note: and 10 more like this one, at hall.loft:32:1, hall.loft:33:1, …\n"), "{several}");
         let found: Vec<Diagnostic> = (0..28).map(|n| one(n, if n == 26 { 1000 } else { 0 })).collect();
         assert!(shown(&found).ends_with("\n… and 1008 more warnings\n"));
     }
