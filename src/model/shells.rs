@@ -14,7 +14,7 @@ use super::topology::{EdgeId, Model, PatchId, Shell, SurfaceId};
 use super::trace::Track;
 use crate::base::fault::{Fault, Result};
 use crate::base::origin::Origin;
-use crate::base::tolerance::Tolerance;
+use crate::base::tolerance::{SNAP_SHARE, Tolerance};
 use crate::network::Network;
 
 /// Edges of some surfaces as tracks, and their segments.
@@ -165,7 +165,7 @@ impl Model {
             [first, others @ ..] if !others.is_empty() => {
                 // Skins that close may lie apart or inside each other; an open one is all of its shell.
                 if let Some(apart) = others.iter().find(|c| !(request.branches || first.closed && c.closed)) {
-                    return Err(self.not_connected(first, apart));
+                    return Err(self.not_connected(request, first, apart));
                 }
                 if !request.branches {
                     self.report_touching(request, &components, tolerance, sink)?;
@@ -188,12 +188,14 @@ impl Model {
     }
 
     /// E618 with where two components come nearest.
-    fn not_connected(&self, first: &Component, apart: &Component) -> Fault {
+    fn not_connected(&self, request: &ShellRequest, first: &Component, apart: &Component) -> Fault {
         let ids = |c: &Component| c.faces.iter().map(|f| f.0).collect::<Vec<_>>();
         let (joined, apart) = (ids(first), ids(apart));
         let found = self.apart(&joined, &apart);
         let (a, b, gap, at) = found.map_or((joined[0], apart[0], 0.0, DVec3::ZERO), |f| (f.surfaces.0, f.surfaces.1, f.gap, f.at));
-        ShellFault::NotAdjacent { a: self.origin_of(a), b: self.origin_of(b), gap, at }.into()
+        let smaller = [a, b].map(|s| self.surfaces[s.index()].surface.hull().diagonal()).into_iter().fold(f64::INFINITY, f64::min);
+        let near = gap > 0.0 && gap <= SNAP_SHARE * smaller;
+        ShellFault::NotAdjacent { a: self.origin_of(a), b: self.origin_of(b), gap, at, near, snap: request.snap }.into()
     }
 }
 

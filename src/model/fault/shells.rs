@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{Describe, Report, Say, codes};
+use crate::base::fault::quantities::{round_above, typed};
+use crate::base::fault::{Describe, Edit, Report, Say, Subject, codes};
 use crate::base::origin::Origin;
 
 /// What can go wrong with a shell, or deserves a word. Lengths are model units.
@@ -49,6 +50,10 @@ pub enum ShellFault {
         gap: f64,
         /// Where that is.
         at: DVec3,
+        /// The gap is small beside both faces, so that they may be meant to meet.
+        near: bool,
+        /// The distance within which edges are glued, with the expression that says so.
+        snap: Option<(f64, Origin)>,
     },
     /// E656 `shell-not-closed`: something that only a closed shell has was asked for.
     NotClosed {
@@ -96,14 +101,16 @@ impl Describe for ShellFault {
                 }
                 report.help("make two shells")
             }
-            Self::NotAdjacent { a, b, gap, at } => Report::new(format!(
-                "{} and {} share no edge; their borders are {} apart at {}",
-                say.quoted(*a, "one face"),
-                say.quoted(*b, "another one"),
-                say.length(*gap),
-                say.point(*at)
-            ))
-            .both(*a, *b, "this face"),
+            Self::NotAdjacent { a, b, gap, at, near, snap } => {
+                let report = Report::new(format!(
+                    "{} and {} share no edge; their borders are {} apart at {}",
+                    say.quoted(*a, "one face"),
+                    say.quoted(*b, "another one"),
+                    say.length(*gap),
+                    say.point(*at)
+                ));
+                not_glued(report.both(*a, *b, "this face"), *near, *gap, *snap, say)
+            }
             Self::NotClosed { shell, wanted, free } => {
                 if free.is_empty() {
                     let shell_name = say.quoted(*shell, "the shell");
@@ -130,5 +137,22 @@ impl Describe for ShellFault {
                 report.help("add the surfaces that close it to the shell")
             }
         }
+    }
+}
+
+/// E618 with the `snap` of the shell, and one that reaches over a small gap.
+fn not_glued(report: Report, near: bool, gap: f64, snap: Option<(f64, Origin)>, say: &dyn Say) -> Report {
+    let report = match snap {
+        Some((within, says)) => report.at(says, format!("edges within {} are glued", say.length(within))),
+        None => report,
+    };
+    if !near {
+        return report;
+    }
+    let larger = typed(say, round_above(gap));
+    let report = report.help(format!("`snap: {larger}` in the settings of the shell glues them, or build both on the same curve"));
+    match snap {
+        Some((_, says)) => report.edit(Subject::Entity(says), Edit::Put(larger)),
+        None => report,
     }
 }
