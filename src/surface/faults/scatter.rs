@@ -99,7 +99,7 @@ impl Describe for ScatterFault {
             }
             Self::Steep { surface, a, b, steep } => {
                 let ((a, b), which) = (say.pair(*a, *b), say.quoted(*surface, "this surface"));
-                let message = format!("{which} rises {steep:.0} times as far as it runs from {a} to {b}");
+                let message = format!("{which} has a slope of {steep:.0} from {a} to {b}");
                 label(Report::new(message), "very steep")
                     .help("points of two sheets are not one surface over a plane: leave one sheet out, or choose another `along:`")
             }
