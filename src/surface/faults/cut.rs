@@ -89,13 +89,13 @@ impl Describe for CutFault {
             Self::CutOpen { cutter, surface, ends, outside } => {
                 let places = say.points(ends);
                 let why = match ends.len() {
-                    _ if *outside => "all of it lies beyond the border".to_owned(),
-                    0 => "it runs from border to border, but both of its sides are one part".to_owned(),
+                    _ if *outside => "it lies outside the border".to_owned(),
+                    0 => "it runs from border to border, but leaves one part".to_owned(),
                     1 => format!("it ends inside at {}", places[0]),
                     _ => format!("both its ends lie inside, at {}", places.join(" and ")),
                 };
                 let (which, whole) = (say.quoted(*cutter, "a curve"), say.quoted(*surface, "the surface"));
-                Report::new(format!("{which} cuts nothing off {whole}: {why}"))
+                Report::new(format!("{which} does not divide {whole}: {why}"))
                     .at(*cutter, if ends.is_empty() { "divides nothing" } else { "ends inside" })
                     .at(*surface, "this surface")
                     .help("a curve divides a surface when it runs from border to border, or closes, alone or with others")
