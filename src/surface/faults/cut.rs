@@ -102,7 +102,7 @@ impl Describe for CutFault {
             }
             Self::NothingParted { surface, at, tolerance } => {
                 let (name, at) = (say.quoted(*surface, "the surface"), say.point(*at));
-                Report::new(format!("a cut of {name} cannot be followed to its end near {at}: both of its sides are one part"))
+                Report::new(format!("a cut of {name} could not be traced to its end near {at}: it leaves one part"))
                     .at(*surface, "this surface")
                     .help("a smaller `tolerance` separates curves, and bends of a curve, that are close together")
                     .note(format!(
