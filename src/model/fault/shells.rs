@@ -80,7 +80,7 @@ impl Describe for ShellFault {
             ))
             .at(*shell, "not closed"),
             Self::NotOrientable { shell, a, b, at } => Report::new(format!(
-                "{} has only one side: {} and {} cannot be oriented alike at {}",
+                "{} is not orientable: {} and {} cannot be oriented alike at {}",
                 say.quoted(*shell, "the shell"),
                 say.quoted(*a, "one surface"),
                 say.quoted(*b, "another one"),
