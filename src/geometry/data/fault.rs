@@ -188,7 +188,7 @@ impl Describe for CurveFault {
             Self::Collinear { points: [a, m, b], .. } => {
                 let on = say.points(&[*a, *m, *b]).join(", ");
                 let typed = |p: &DVec3| format!("({}, {}, {})", real(p.x), real(p.y), real(p.z));
-                Report::new(format!("no circle goes through three points of one line: {on}"))
+                Report::new(format!("no circle passes through three collinear points: {on}"))
                     .label(Subject::Argument("through"), "on the line through the other two")
                     .help(format!("move it off the line, or say line({}, {})", typed(a), typed(b)))
             }
