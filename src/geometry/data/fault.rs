@@ -274,7 +274,7 @@ fn knots(what: KnotFault, name: &str) -> Report {
                 .label(Subject::Argument("knots"), format!("{given} given"))
                 .note("points + degree + 1 knots, the outer ones repeated where the curve is to start and end at its poles")
         }
-        KnotFault::EmptyDomain { knot } => Report::new(format!("the knots of {name} leave no domain: it starts and ends at {knot}"))
+        KnotFault::EmptyDomain { knot } => Report::new(format!("the domain of {name} is empty: it starts and ends at {knot}"))
             .label(Subject::Argument("knots"), "no two different knots in the middle"),
     }
 }
