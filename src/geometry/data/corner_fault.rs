@@ -57,7 +57,7 @@ impl Describe for CornerFault {
                 let report = Report::new(format!("there is no corner at {}", say.point(*p))).label(Subject::Argument("at"), "no corner");
                 match nearest {
                     Some(corner) => report
-                        .help(format!("the nearest corner is at {}; `at:` left out takes all of them", say.point(*corner)))
+                        .help(format!("the nearest corner is at {}; without `at:` all corners are taken", say.point(*corner)))
                         .edit(Subject::Argument("at"), Edit::DropArgument),
                     None => report.note("the curve has no corner"),
                 }
