@@ -106,7 +106,7 @@ impl Describe for FaceFault {
             .at(*surface, "has a piece of border there shorter than a millionth of the size")
             .help("method: delaunay"),
             Self::Empty { surface, at } => {
-                Report::new(format!("{} has nothing inside its border at {}", say.quoted(*surface, "a face"), say.point(*at)))
+                Report::new(format!("the border of {} encloses no area at {}", say.quoted(*surface, "a face"), say.point(*at)))
                     .at(*surface, "this face")
             }
         }
