@@ -160,7 +160,7 @@ impl Describe for SurfaceFault {
             .at(*surface, "one polynomial through all curves")
             .help("`coons` with the same curves stays between them"),
             Self::SliverPatch { surface, direction, from_to, width, neighbour, at } => Report::new(format!(
-                "kinks of {} almost face each other: a strip {} wide beside one of {}, {direction} {} to {}, at {}",
+                "kinks on opposite borders of {} are slightly offset: they leave a strip {} wide beside one of {}, {direction} {} to {}, at {}",
                 say.quoted(*surface, "this surface"),
                 say.length(*width),
                 say.length(*neighbour),
