@@ -84,8 +84,8 @@ impl Describe for DeviationFault {
             }),
             Self::AsNet { net, surface, off, proved } => Report::new({
                 let (net, surface, off) = (say.quoted(*net, "the net"), say.quoted(*surface, "its surface"), say.length(*off));
-                let bound = if *proved { "nowhere" } else { "at no sampled place" };
-                format!("{net} is {bound} farther than {off} from {surface}")
+                let sampled = if *proved { "" } else { " at all sampled points" };
+                format!("{net} approximates {surface} within {off}{sampled}")
             })
             .at(*net, "a B-spline approximation"),
         }
