@@ -73,9 +73,9 @@ impl Describe for OutputFault {
                 Report::new(format!("{called} in \"{path}\"")).at(*of, "written here")
             }
             Self::SameFile { outputs, members } => same_file(outputs, *members),
-            Self::OverInput { of, path, what } => Report::new(format!("\"{path}\" is {what}, which this would replace"))
-                .at(*of, "written here")
-                .help("give the output another name"),
+            Self::OverInput { of, path, what } => {
+                Report::new(format!("this would overwrite \"{path}\", {what}")).at(*of, "written here").help("give the output another name")
+            }
             Self::TooMuchWork { of, path } => Report::new(format!("\"{path}\" exceeds its work limit"))
                 .at(*of, "to be written here")
                 .help("write fewer or simpler things to one file; look for points that are far off by mistake"),
