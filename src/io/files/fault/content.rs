@@ -99,7 +99,7 @@ impl Describe for ContentFault {
             Self::Repaired { of, path, at } => Report::new(format!("\"{path}\"{}: {}", at.place(), at.what)).at(*of, "imported here"),
             Self::Unusable { of, path, total, faces, share, whole } => unusable(*of, path, *total, faces, *share, *whole),
             Self::ImportCycle { of, ring } => {
-                Report::new(format!("modules import each other: {}", ring.join(" → "))).at(*of, "closes the ring")
+                Report::new(format!("modules import each other: {}", ring.join(" → "))).at(*of, "closes the cycle")
             }
         }
     }
