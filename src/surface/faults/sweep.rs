@@ -154,9 +154,13 @@ impl Describe for SweepFault {
             Self::SelfIntersects { surface, path, at, reach, radius } => {
                 let why = match radius {
                     Some(radius) => {
-                        format!("it reaches {} from a path that bends with a radius of {} there", say.length(*reach), say.length(*radius))
+                        format!(
+                            "the section extends {} from a path whose radius of curvature there is {}",
+                            say.length(*reach),
+                            say.length(*radius)
+                        )
                     }
-                    None => format!("the path between its corners is too short for a section that reaches {} from it", say.length(*reach)),
+                    None => format!("the path between its corners is too short for a section that extends {} from it", say.length(*reach)),
                 };
                 Report::new(format!("{} crosses itself at {}: {why}", say.quoted(*surface, "this sweep"), say.point(*at)))
                     .at(*path, "bends too sharply for this section")
