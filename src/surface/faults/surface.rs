@@ -186,7 +186,7 @@ impl Describe for SurfaceFault {
             }
             Self::OffsetFolds { surface, distance, largest, at } => {
                 let message = format!(
-                    "{} folds over: at {} the surface bends with a radius of {}, less than the distance, {}",
+                    "{} folds over: at {} the radius of curvature of the surface is {}, less than the distance, {}",
                     say.quoted(*surface, "this offset"),
                     say.point(*at),
                     say.length(*largest),
