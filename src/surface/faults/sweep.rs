@@ -107,7 +107,7 @@ impl Describe for SweepFault {
             .at(*guide, "too short, even extended by a quarter at each end")
             .help("draw this guide as far as the main guide goes, or cut the main guide: `c[A..B]`"),
             Self::GuideDoublesBack { guide, law, at } => Report::new(format!(
-                "{} runs back at {}: under the {law} law a section would pass there twice",
+                "{} doubles back at {}: under the {law} law a section would pass there twice",
                 say.quoted(*guide, "a guide"),
                 say.point(*at)
             ))
