@@ -114,7 +114,7 @@ impl Describe for SweepFault {
             .at(*guide, "turns back here")
             .help("take the run of it that goes one way, `c[A..B]`, or another `law:`"),
             Self::MainGuideOnAxis { guide, at, off } => Report::new(format!(
-                "{} is {} from the axis at {}: no half-plane goes through it there",
+                "{} is {} from the axis at {}: no half-plane through it is defined there",
                 say.quoted(*guide, "the main guide"),
                 say.length(*off),
                 say.point(*at)
