@@ -154,7 +154,7 @@ impl Describe for SurfaceFault {
                     .help("a mesh of it has no nodes on the crossing line: move the curves apart, or build parts that meet along that line")
             }
             Self::TransfiniteOscillation { surface, direction, curves, lebesgue } => Report::new(format!(
-                "{} may oscillate between its {curves} curves across {direction}: errors grow up to {lebesgue:.1} times",
+                "{} may oscillate between its {curves} curves across {direction}: errors are amplified up to {lebesgue:.1} times",
                 say.quoted(*surface, "this surface")
             ))
             .at(*surface, "one polynomial through all curves")
