@@ -97,12 +97,12 @@ impl Describe for SweepFault {
     fn describe(&self, say: &dyn Say) -> Report {
         match self {
             Self::GuideMissesStation { guide, law, station, at, miss, nearest } => Report::new(format!(
-                "{} does not reach the station at {}% of the main guide, {}: under the {law} law it stays {} off, nearest at {}",
+                "{} does not reach the station at {}% of the main guide, {}: under the {law} law its nearest point, {}, is {} away",
                 say.quoted(*guide, "a guide"),
                 decimals(100.0 * station, 1),
                 say.point(*at),
-                say.length(*miss),
-                say.point(*nearest)
+                say.point(*nearest),
+                say.length(*miss)
             ))
             .at(*guide, "too short, even extended by a quarter at each end")
             .help("draw this guide as far as the main guide goes, or cut the main guide: `c[A..B]`"),
