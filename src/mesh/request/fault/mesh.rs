@@ -150,10 +150,12 @@ impl Describe for MeshFault {
                     .edit(Subject::Entity(*earlier), Edit::DropRule(Some(key)))
             }
             Self::TooMany { of, name, elements, limit } => {
-                let size = elements.map_or_else(|| format!("more than {}", many(*limit)), many);
-                Report::new(format!("the mesh `{name}` would have {size} elements"))
-                    .at(*of, "asked for here")
-                    .help(format!("use a larger value; the limit is {limit} elements, `--max-elements` sets another"))
+                let limit = grouped(*limit);
+                let message = match elements {
+                    Some(count) => format!("mesh `{name}` would have {} elements; the limit is {limit}", many(*count)),
+                    None => format!("mesh `{name}` would have too many elements; the limit is {limit}"),
+                };
+                Report::new(message).at(*of, "asked for here").help("use a larger value, or set another limit with `--max-elements`")
             }
             Self::TooMuchWork { of, name, surface } => {
                 let report = Report::new(format!("the mesh `{name}` exceeds its work limit")).at(*of, "asked for here");
@@ -203,10 +205,25 @@ impl Describe for MeshFault {
     }
 }
 
-/// A count in words: beyond sense the digits tell nothing.
+/// A count to be read: whole up to a thousand millions, else its first two digits.
 fn many(count: u64) -> String {
+    const WHOLE: u64 = 1_000_000_000;
     const SENSE: u64 = 1_000_000_000_000_000;
-    if count > SENSE { "more than 1e15".to_owned() } else { count.to_string() }
+    match count {
+        0..WHOLE => grouped(count),
+        WHOLE..=SENSE => format!("{:.1e}", count as f64).replace(".0e", "e"),
+        _ => "more than 1e15".to_owned(),
+    }
+}
+
+/// A count with its digits in threes.
+fn grouped(count: u64) -> String {
+    let digits = count.to_string();
+    let places = digits
+        .chars()
+        .enumerate()
+        .map(|(k, digit)| if k > 0 && (digits.len() - k).is_multiple_of(3) { format!(" {digit}") } else { digit.to_string() });
+    places.collect()
 }
 
 /// The report of a part that is too small for its mesh: its length, place, and how many others there are.
@@ -230,4 +247,15 @@ fn lost(say: &dyn Say, (of, mesh): (Origin, &str), what: LostPart, (length, at, 
     };
     let report = if more > 0 { report.note(format!("so did {more} other{}", if more == 1 { "" } else { "s" })) } else { report };
     report.at(of, format!("has {left}")).help("set a smaller `tolerance`, or `snap` of its shell, or remove it from the model")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_are_readable() {
+        let said = [999, 12_345, 100_000_000, 2_000_000_000_000, 1_260_000_000_000, u64::MAX].map(many);
+        assert_eq!(said, ["999", "12 345", "100 000 000", "2e12", "1.3e12", "more than 1e15"]);
+    }
 }
