@@ -105,10 +105,7 @@ impl Describe for CutFault {
                 Report::new(format!("a cut of {name} could not be traced to its end near {at}: it leaves one part"))
                     .at(*surface, "this surface")
                     .help("a smaller `tolerance` separates curves, and bends of a curve, that are close together")
-                    .note(format!(
-                        "points closer together than four times the model's tolerance of {} count as one",
-                        say.length(*tolerance)
-                    ))
+                    .note(one_point(*tolerance, say))
             }
             Self::CutsTooNear { surface, cuts: [one, other], at, apart, tolerance } => {
                 let (name, at) = (say.quoted(*surface, "the surface"), say.point(*at));
@@ -120,10 +117,7 @@ impl Describe for CutFault {
                 if other != one && other != surface {
                     report = report.at(*other, "and this one");
                 }
-                report.help("move one of them away or onto the other, or set a smaller `tolerance`").note(format!(
-                    "points closer together than four times the model's tolerance of {} count as one",
-                    say.length(*tolerance)
-                ))
+                report.help("move one of them away or onto the other, or set a smaller `tolerance`").note(one_point(*tolerance, say))
             }
             Self::PartsNotWhole { surface, cuts, whole, parts, tolerance } => {
                 let name = say.quoted(*surface, "the surface");
@@ -132,10 +126,7 @@ impl Describe for CutFault {
                     100.0 * parts / whole
                 );
                 let report = cuts.iter().fold(Report::new(message).at(*surface, "this surface"), |r, cut| r.at(*cut, "this curve"));
-                report.help("a smaller `tolerance` separates curves that are close together").note(format!(
-                    "points closer together than four times the model's tolerance of {} count as one",
-                    say.length(*tolerance)
-                ))
+                report.help("a smaller `tolerance` separates curves that are close together").note(one_point(*tolerance, say))
             }
             Self::NotDivided { surface, what, at } => {
                 let name = say.quoted(*surface, "the surface");
@@ -157,4 +148,9 @@ impl Describe for CutFault {
             }
         }
     }
+}
+
+/// How near points of cuts are one.
+fn one_point(tolerance: f64, say: &dyn Say) -> String {
+    format!("points closer together than four times the model's tolerance of {} count as one", say.length(tolerance))
 }
