@@ -76,57 +76,57 @@ impl Describe for ContactFault {
                 None => "mesh the pieces that `imprint` makes of them: the common region is one of them".to_owned(),
             }),
             Self::FacesTouch { within, a, b, names, how, at, imprint } => {
-                let (one, other) = (called(&names.0, "one face"), called(&names.1, "another face"));
-                let (text, first, second) = match how {
-                    Touching::Overlap => (format!("{one} and {other} overlap at"), "this face", "and this one"),
-                    Touching::Edge { length } if *length > 0.0 => {
-                        let length = say.length(*length);
-                        (
-                            format!("an edge of {one} lies on {other} without sharing nodes, {length} long, at"),
-                            "its edge",
-                            "lies on this face",
-                        )
-                    }
-                    Touching::Edge { .. } => {
-                        (format!("an edge of {one} meets {other} without sharing a node at"), "its edge", "meets this face")
-                    }
-                    Touching::Meeting => (format!("{one} and {other} touch or cross at"), "this face", "and this one"),
-                    Touching::Crossing => (format!("{one} and {other} cross without sharing nodes at"), "this face", "and this one"),
-                    Touching::Inside => (
-                        format!("the body of {one} lies inside that of {other}, which has no void there, at"),
-                        "this body",
-                        "lies in this one",
-                    ),
-                    Touching::Unknown => (
-                        format!("whether {one} and {other} cross could not be determined within the search limits, near"),
-                        "this face",
-                        "and this one",
-                    ),
-                };
+                let (text, first, second) = touching(*how, names, say);
                 Report::new(format!("{text} {}", say.point(*at)))
                     .at(*a, first)
                     .at(*b, second)
                     .at(*within, "they are not joined here")
-                    .help(match how {
-                        Touching::Overlap => match pieces(names) {
-                            Some(pieces) => format!("`{pieces}` are their pieces, with the common region once"),
-                            None => "mesh the pieces that `imprint` makes of them: the common region is one of them".to_owned(),
-                        },
-                        Touching::Edge { length } if *length <= 0.0 => {
-                            format!("list the point in the mesh, then both share a node there: `mesh m of …, {}`", say.point(*at))
-                        }
-                        Touching::Inside => "one mesh of both fills this space twice: cut or leave out one of them, or mesh them separately".to_owned(),
-                        Touching::Unknown => "check them with `meet`, or leave one of them out".to_owned(),
-                        _ if !imprint => "`imprint: true` in the settings joins them".to_owned(),
-                        Touching::Meeting => "the line along which they meet cuts off no part; in a mesh of the shell both have its nodes".to_owned(),
-                        _ => match pieces(names) {
-                            Some(pieces) => format!("`imprint: true` joins whole edges, or parts of them between corners, and this part ends at no corner: mesh `{pieces}`"),
-                            None => "`imprint: true` joins whole edges, or parts of them between corners, and this part ends at no corner: mesh the pieces that `imprint` makes of them".to_owned(),
-                        },
-                    })
+                    .help(joining(*how, names, *imprint, &say.point(*at)))
             }
         }
     }
+}
+
+/// How two faces touch, up to the place, and the labels of both.
+fn touching(how: Touching, names: &(String, String), say: &dyn Say) -> (String, &'static str, &'static str) {
+    let (one, other) = (called(&names.0, "one face"), called(&names.1, "another face"));
+    let faces = |text: String| (text, "this face", "and this one");
+    match how {
+        Touching::Overlap => faces(format!("{one} and {other} overlap at")),
+        Touching::Edge { length } if length > 0.0 => {
+            let text = format!("an edge of {one} lies on {other} without sharing nodes, {} long, at", say.length(length));
+            (text, "its edge", "lies on this face")
+        }
+        Touching::Edge { .. } => (format!("an edge of {one} meets {other} without sharing a node at"), "its edge", "meets this face"),
+        Touching::Meeting => faces(format!("{one} and {other} touch or cross at")),
+        Touching::Crossing => faces(format!("{one} and {other} cross without sharing nodes at")),
+        Touching::Inside => {
+            (format!("the body of {one} lies inside that of {other}, which has no void there, at"), "this body", "lies in this one")
+        }
+        Touching::Unknown => faces(format!("whether {one} and {other} cross could not be determined within the search limits, near")),
+    }
+}
+
+/// What joins or parts two faces that touch.
+fn joining(how: Touching, names: &(String, String), imprint: bool, place: &str) -> String {
+    let text = match (how, pieces(names)) {
+        (Touching::Overlap, Some(pieces)) => return format!("`{pieces}` are their pieces, with the common region once"),
+        (Touching::Overlap, None) => "mesh the pieces that `imprint` makes of them: the common region is one of them",
+        (Touching::Edge { length }, _) if length <= 0.0 => {
+            return format!("list the point in the mesh, then both share a node there: `mesh m of …, {place}`");
+        }
+        (Touching::Inside, _) => "one mesh of both fills this space twice: cut or leave out one of them, or mesh them separately",
+        (Touching::Unknown, _) => "check them with `meet`, or leave one of them out",
+        _ if !imprint => "`imprint: true` in the settings joins them",
+        (Touching::Meeting, _) => "the line along which they meet cuts off no part; in a mesh of the shell both have its nodes",
+        (_, pieces) => {
+            let pieces = pieces.map_or_else(|| "the pieces that `imprint` makes of them".to_owned(), |pieces| format!("`{pieces}`"));
+            return format!(
+                "`imprint: true` joins whole edges, or parts of them between corners, and this part ends at no corner: mesh {pieces}"
+            );
+        }
+    };
+    text.to_owned()
 }
 
 /// A name in backquotes, or what stands for one that is missing.
