@@ -628,8 +628,9 @@ mod mistakes {
     }
 
     fn check<T: std::fmt::Debug>(result: Result<T, Fault>, code: &str, words: &[&str]) {
-        let report = result.unwrap_err().describe(&Plain);
-        assert_eq!(report.code.0, code, "{report:?}");
+        let fault = result.unwrap_err();
+        let report = fault.describe(&Plain);
+        assert_eq!(fault.code().0, code, "{report:?}");
         let all = format!("{} {:?} {:?}", report.message, report.help, report.labels);
         for word in words {
             assert!(all.contains(word), "no {word} in {all}");
@@ -740,7 +741,7 @@ mod roundings {
     use lofting::geometry::closest;
     use lofting::geometry::construct::fillet::{Treatment, treat};
     use lofting::geometry::curves::curve::Shape;
-    use lofting::geometry::data::fault::CurveFault;
+    use lofting::geometry::data::corner_fault::CornerFault;
 
     /// Numbers from 0 to 1, always the same.
     struct Numbers(u64);
@@ -787,7 +788,7 @@ mod roundings {
             let (radius, rounded) = match round(&corner, radius) {
                 Ok(curve) => (radius, curve),
                 Err(fault) => match fault.of() {
-                    Some(&CurveFault::CornerTooNarrow { largest, .. }) => {
+                    Some(&CornerFault::TooNarrow { largest, .. }) => {
                         refused += 1;
                         assert!(round(&corner, largest * 1.001).is_err(), "{case}: {largest} is not the largest");
                         if largest < 1e-3 {
@@ -795,7 +796,7 @@ mod roundings {
                         }
                         (largest, round(&corner, largest).unwrap_or_else(|_| panic!("{case}: {largest} does not fit")))
                     }
-                    Some(CurveFault::NoCorner { .. }) => continue,
+                    Some(CornerFault::NoCorner { .. }) => continue,
                     _ => panic!("{case}: {fault:?}"),
                 },
             };

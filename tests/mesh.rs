@@ -460,7 +460,7 @@ fn written_counts_too_coarse_for_a_limit_name_both() {
     }];
     let fault = scene.mesh(&plan).unwrap_err();
     let report = fault.describe(&Plain);
-    assert_eq!(report.code.0, "E703");
+    assert_eq!(fault.code().0, "E703");
     assert!(report.labels.len() == 2 && report.help.as_deref() == Some("count: 11"), "{report:?}");
     plan.rules[0].settings.count = Some((11, Origin(8)));
     assert!(scene.sound(&plan).chord_error(&tolerance()).unwrap() <= 0.01);

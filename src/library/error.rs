@@ -105,12 +105,12 @@ impl Error {
 /// A fault as a row that points nowhere.
 pub(super) fn row(fault: &Fault, say: &dyn Say) -> DiagnosticRow {
     let report = fault.describe(say);
-    let severity = match report.code.severity() {
+    let severity = match fault.code().severity() {
         Severity::Error => "error",
         Severity::Warning => "warning",
         Severity::Note => "note",
     };
-    let (code, labels) = (report.code.0, Vec::new());
+    let (code, labels) = (fault.code().0, Vec::new());
     DiagnosticRow { code, severity, message: report.message, help: report.help, notes: report.notes, labels, count: 1 }
 }
 

@@ -135,7 +135,7 @@ impl Mesh {
     fn encoded(&self, name: &str) -> Result<(Vec<u8>, Vec<DiagnosticRow>), Error> {
         let names = Names::default();
         let say = Speaker { names: &names, unit: Some(self.unit), tolerance: Some(self.tolerance) };
-        let failed = |fault: crate::io::files::fault::FileFault| Error::of_fault(&fault.into(), &say);
+        let failed = |fault: crate::io::files::fault::FormatFault| Error::of_fault(&fault.into(), &say);
         let format = format_for(Origin::NONE, name).map_err(failed)?;
         let options = Options { groups: self.groups.clone(), ..Options::default() };
         let deck = Deck { mesh: &self.mesh, unit: self.unit.name, options: &options };

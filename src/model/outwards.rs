@@ -1,6 +1,6 @@
 //! Closed skins point out of the material: outwards, and a skin inside another one, round a cavity, into the cavity.
 
-use crate::model::fault::ModelFault;
+use crate::model::fault::ContactFault;
 use glam::DVec3;
 
 use super::measure;
@@ -17,7 +17,7 @@ use crate::geometry::data::fault::CurveFault;
 use crate::model::fault::Touching;
 use crate::network::Chain;
 use crate::surface::Surface;
-use crate::surface::faults::CutFault;
+use crate::surface::faults::CrossingFault;
 use crate::surface::intersect::with_curve::with_curve;
 use crate::surface::intersect::with_surfaces::with_surfaces;
 
@@ -91,7 +91,7 @@ impl Model {
                 if let Some(&(a, b, (how, at))) = found.get(covers.unwrap_or(0)) {
                     let names = (self.surfaces[a.index()].name.clone(), self.surfaces[b.index()].name.clone());
                     let (a, b) = (surface(a).origin(), surface(b).origin());
-                    sink.push(ModelFault::FacesTouch { within: request.origin, a, b, names, how, at, imprint: request.branches }.into());
+                    sink.push(ContactFault::FacesTouch { within: request.origin, a, b, names, how, at, imprint: request.branches }.into());
                 }
             }
         }
@@ -125,7 +125,7 @@ fn touching(a: &Surface, b: &Surface, tolerance: &Tolerance) -> Result<Option<(T
             Ok(at.map(|at| (Touching::Meeting, at)))
         }
         Err(fault) => match fault.of() {
-            Some(CutFault::RunAlong { at, .. }) => Ok(Some((Touching::Overlap, *at))),
+            Some(CrossingFault::RunAlong { at, .. }) => Ok(Some((Touching::Overlap, *at))),
             _ => Err(fault),
         },
     }

@@ -1,6 +1,6 @@
 //! How near the borders of a shell's faces must be to be one, and what joining them did (`docs/notes/glue.md`).
 
-use crate::model::fault::ModelFault;
+use crate::model::fault::GluingFault;
 use std::collections::BTreeMap;
 
 use glam::DVec3;
@@ -117,17 +117,17 @@ impl Seams<'_> {
         if let Some(longest) = short.iter().copied().max_by(|a, b| length(*a).total_cmp(&length(*b)).then(b.cmp(a))) {
             let of = self.model.origin_of(self.surface(longest));
             let at = parts[longest].track.point(0.5 * length(longest));
-            sink.push(ModelFault::EdgeTooShort { of, length: length(longest), at, more: short.len() - 1 }.into());
+            sink.push(GluingFault::EdgeTooShort { of, length: length(longest), at, more: short.len() - 1 }.into());
         }
         if let Some(first) = slivers.first() {
             let surface = self.model.patches[first.index()].surface;
             let around = self.model.loop_of(*first);
-            let fault = ModelFault::FaceTooThin { surface: self.model.origin_of(surface), at: around.at(0.5).1, more: slivers.len() - 1 };
+            let fault = GluingFault::FaceTooThin { surface: self.model.origin_of(surface), at: around.at(0.5).1, more: slivers.len() - 1 };
             sink.push(fault.into());
         }
         if let Some(gap) = self.widest().filter(|gap| gap.width > tolerance.point) {
             let (a, b) = (self.model.origin_of(gap.surfaces.0), self.model.origin_of(gap.surfaces.1));
-            let fault = ModelFault::ShellGlued { shell: request.origin, says: request.snap.map(|s| s.1), a, b, gap: gap.width, at: gap.at };
+            let fault = GluingFault::Glued { shell: request.origin, says: request.snap.map(|s| s.1), a, b, gap: gap.width, at: gap.at };
             sink.push(fault.into());
         }
     }
@@ -151,6 +151,6 @@ impl Seams<'_> {
         }
         let Some(gap) = worst else { return Ok(()) };
         let (a, b) = (self.model.origin_of(gap.surfaces.0), self.model.origin_of(gap.surfaces.1));
-        Err(ModelFault::EdgeMismatch { a, b, gap: gap.width, at: gap.at, stated: (stated, says) }.into())
+        Err(GluingFault::EdgeMismatch { a, b, gap: gap.width, at: gap.at, stated: (stated, says) }.into())
     }
 }

@@ -1,6 +1,6 @@
 //! Shells: surfaces as one skin, connected and oriented [Koh & Park 1990, §4.3].
 
-use crate::model::fault::ModelFault;
+use crate::model::fault::ShellFault;
 use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec3;
@@ -14,7 +14,7 @@ use super::topology::{EdgeId, Model, PatchId, Shell, SurfaceId};
 use super::trace::Track;
 use crate::base::fault::{Fault, Result};
 use crate::base::origin::Origin;
-use crate::base::tolerance::Tolerance;
+use crate::base::tolerance::{SNAP_SHARE, Tolerance};
 use crate::network::Network;
 
 /// Edges of some surfaces as tracks, and their segments.
@@ -66,7 +66,7 @@ impl Model {
         if let Some(longest) = free.iter().copied().max_by(|a, b| pieces.segments[*a].length().total_cmp(&pieces.segments[*b].length())) {
             let length = free.iter().map(|a| pieces.segments[*a].length()).sum();
             let at = joins.middle(longest);
-            sink.push(ModelFault::ShellOpen { shell: request.origin, edges: free.len(), length, at }.into());
+            sink.push(ShellFault::Open { shell: request.origin, edges: free.len(), length, at }.into());
         }
         let mut free: Vec<_> =
             free.iter().flat_map(|a| usages[*a].iter().map(|(s, _)| (*s, joins.middle(*a), pieces.segments[*a].length()))).collect();
@@ -146,7 +146,7 @@ impl Model {
             if users.len() > 2 {
                 let at = joins.middle(segment);
                 let users = users.iter().map(|(s, _)| self.origin_of(*s)).collect();
-                return Err(ModelFault::ShellNonManifold { shell: request.origin, users, at }.into());
+                return Err(ShellFault::NonManifold { shell: request.origin, users, at }.into());
             }
         }
         Ok(())
@@ -159,13 +159,13 @@ impl Model {
         if let Some(one_sided) = components.iter().find_map(|c| c.one_sided.as_ref()) {
             let (a, b) = (self.origin_of(one_sided.faces.0), self.origin_of(one_sided.faces.1));
             let at = sewn.joins.middle(one_sided.segment);
-            return Err(ModelFault::ShellNotOrientable { shell: request.origin, a, b, at }.into());
+            return Err(ShellFault::NotOrientable { shell: request.origin, a, b, at }.into());
         }
         match components.as_slice() {
             [first, others @ ..] if !others.is_empty() => {
                 // Skins that close may lie apart or inside each other; an open one is all of its shell.
                 if let Some(apart) = others.iter().find(|c| !(request.branches || first.closed && c.closed)) {
-                    return Err(self.not_connected(first, apart));
+                    return Err(self.not_connected(request, first, apart));
                 }
                 if !request.branches {
                     self.report_touching(request, &components, tolerance, sink)?;
@@ -188,12 +188,14 @@ impl Model {
     }
 
     /// E618 with where two components come nearest.
-    fn not_connected(&self, first: &Component, apart: &Component) -> Fault {
+    fn not_connected(&self, request: &ShellRequest, first: &Component, apart: &Component) -> Fault {
         let ids = |c: &Component| c.faces.iter().map(|f| f.0).collect::<Vec<_>>();
         let (joined, apart) = (ids(first), ids(apart));
         let found = self.apart(&joined, &apart);
         let (a, b, gap, at) = found.map_or((joined[0], apart[0], 0.0, DVec3::ZERO), |f| (f.surfaces.0, f.surfaces.1, f.gap, f.at));
-        ModelFault::NotAdjacent { a: self.origin_of(a), b: self.origin_of(b), gap, at }.into()
+        let smaller = [a, b].map(|s| self.surfaces[s.index()].surface.hull().diagonal()).into_iter().fold(f64::INFINITY, f64::min);
+        let near = gap > 0.0 && gap <= SNAP_SHARE * smaller;
+        ShellFault::NotAdjacent { a: self.origin_of(a), b: self.origin_of(b), gap, at, near, snap: request.snap }.into()
     }
 }
 

@@ -16,7 +16,7 @@ use crate::base::fault::{Fault, Result};
 use crate::base::math::compare_points;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
-use crate::network::fault::NetworkFault;
+use crate::network::fault::{ChainFault, GraphFault};
 
 /// What a network is assembled from.
 pub struct Parts<'a> {
@@ -104,7 +104,7 @@ fn stations(curves: &[NetCurve], parts: &Parts) -> Result<Stations> {
         if !stations.closed[k] && settled.len() < 2 {
             let curve = &curves[k].curve;
             return Err(
-                NetworkFault::NoLength { of: curve.origin(), at: curve.start(), length: lengths[k], tolerance: tolerance.point }.into()
+                ChainFault::NoLength { of: curve.origin(), at: curve.start(), length: lengths[k], tolerance: tolerance.point }.into()
             );
         }
         stations.rows[k] = settled;
@@ -195,7 +195,7 @@ fn ambiguous(curves: &[NetCurve], group: &[(u32, u32)], sites: &[DVec3], marks: 
     let shown: Vec<usize> = [a, b].into_iter().chain((0..points.len()).filter(|&k| k != a && k != b)).take(SHOWN).collect();
     // The smallest distance that is not mere rounding is what a smaller tolerance must stay below.
     let gap = least_gap(&points, tolerance.rounding);
-    NetworkFault::ClusterAmbiguous {
+    GraphFault::ClusterAmbiguous {
         points: shown.into_iter().map(|k| (points[k], origin(k))).collect(),
         count: points.len(),
         diameter,

@@ -18,7 +18,7 @@ use crate::base::tolerance::Tolerance;
 use crate::geometry::construct::build;
 use crate::geometry::curves::curve::Shape;
 use crate::geometry::{Curve, Jet, Motion};
-use crate::network::fault::NetworkFault;
+use crate::network::fault::MeetingFault;
 
 /// A run along one curve between two arc lengths; backwards when `s1 < s0`.
 ///
@@ -356,7 +356,7 @@ impl Chain {
         if distance <= tolerance.point {
             return Ok(f);
         }
-        Err(NetworkFault::PointOff { of: self.0.origin, point: p, nearest, tolerance: tolerance.point }.into())
+        Err(MeetingFault::PointOff { of: self.0.origin, point: p, nearest, tolerance: tolerance.point }.into())
     }
 }
 

@@ -1,6 +1,6 @@
 //! Flows of chains: meetings become node lists, node lists become a flow, failures get their measurements.
 
-use crate::network::grid_fault::GridFault;
+use crate::network::fault::GridFault;
 use glam::DVec3;
 
 use super::chain::Chain;
@@ -14,8 +14,8 @@ use crate::base::job;
 use crate::base::origin::Origin;
 use crate::base::par;
 use crate::base::tolerance::Tolerance;
-use crate::network::fault::{CurveEnd, NetworkFault};
-use crate::network::no_flow::NoFlow;
+use crate::network::fault::NoFlow;
+use crate::network::fault::{CurveEnd, EndFault};
 
 /// What the script says about a flow of chains.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -198,7 +198,7 @@ fn ends_that_miss(chains: &[Chain], lists: &[NodeList], hints: &FlowOptions, tol
         let grid = Grid { lists: &lists, same_way: &|_, _| true };
         if detect_grid(&grid, hints).is_ok() {
             let near = may_snap(end(a, x).at.distance(end(b, y).at), chains[a].length().min(chains[b].length()));
-            return Some(NetworkFault::EndsMiss { a: end(a, x), b: end(b, y), near, tolerance: tolerance.point }.into());
+            return Some(EndFault::EndsMiss { a: end(a, x), b: end(b, y), near, tolerance: tolerance.point }.into());
         }
     }
     None

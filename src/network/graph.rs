@@ -17,7 +17,7 @@ use crate::base::math::compare_points;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::Curve;
-use crate::network::fault::NetworkFault;
+use crate::network::fault::{ChainFault, GraphFault};
 
 crate::ids! {
     /// A node of the network.
@@ -146,7 +146,7 @@ impl Network {
     pub fn remove(&mut self, curve: CurveId, users: &[Origin], tolerance: &Tolerance) -> Result<LinkMap> {
         let gone = curve.index();
         if !users.is_empty() {
-            return Err(NetworkFault::InUse { of: self.curves[gone].curve.origin(), users: users.to_vec() }.into());
+            return Err(GraphFault::InUse { of: self.curves[gone].curve.origin(), users: users.to_vec() }.into());
         }
         let mut next = self.clone();
         next.curves.remove(gone);
@@ -168,7 +168,7 @@ impl Network {
         let Input { name, curve, cuts } = input;
         let length = curve.length();
         if length.is_nan() || length <= tolerance.point {
-            return Err(NetworkFault::NoLength { of: curve.origin(), at: curve.start(), length, tolerance: tolerance.point }.into());
+            return Err(ChainFault::NoLength { of: curve.origin(), at: curve.start(), length, tolerance: tolerance.point }.into());
         }
         self.curves.push(NetCurve { name, curve, cuts, links: Vec::new(), nodes: Vec::new(), stations: Vec::new() });
         Ok(())
@@ -256,7 +256,7 @@ impl Network {
 /// Whether a note speaks of the curve.
 fn concerns(note: &Fault, of: Origin) -> bool {
     match note.of() {
-        Some(NetworkFault::SharedRun { owner, other, .. }) => *owner == of || *other == of,
+        Some(GraphFault::SharedRun { owner, other, .. }) => *owner == of || *other == of,
         _ => true,
     }
 }

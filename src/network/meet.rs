@@ -9,7 +9,7 @@ use crate::base::job;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::intersect;
 use crate::geometry::{Hit, closest_pair};
-use crate::network::fault::NetworkFault;
+use crate::network::fault::MeetingFault;
 
 /// One meeting of two chains: a node of the two, or the ends of a shared run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,18 +52,18 @@ pub fn meet_once(a: &Chain, b: &Chain, tolerance: &Tolerance) -> Result<Meeting>
     let meetings = meet(a, b, tolerance)?;
     if meetings.iter().any(|m| m.shared_to.is_some()) {
         let runs = meetings.iter().filter_map(|m| m.shared_to.map(|(fa, _)| (m.point, a.point(fa)))).collect();
-        return Err(NetworkFault::SharesRun { a: a.origin(), b: b.origin(), runs }.into());
+        return Err(MeetingFault::SharesRun { a: a.origin(), b: b.origin(), runs }.into());
     }
     match meetings.as_slice() {
         [one] => Ok(*one),
         [] => {
             let (pa, pb) = closest_points(a, b);
             let near = may_snap(pa.distance(pb), a.length().min(b.length()));
-            Err(NetworkFault::NoMeeting { a: (a.origin(), pa), b: (b.origin(), pb), near, tolerance: tolerance.point }.into())
+            Err(MeetingFault::NoMeeting { a: (a.origin(), pa), b: (b.origin(), pb), near, tolerance: tolerance.point }.into())
         }
         several => {
             let candidates = several.iter().map(|m| (m.point, m.fa)).collect();
-            Err(NetworkFault::SeveralMeetings { a: a.origin(), b: b.origin(), candidates }.into())
+            Err(MeetingFault::SeveralMeetings { a: a.origin(), b: b.origin(), candidates }.into())
         }
     }
 }

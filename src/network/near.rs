@@ -15,7 +15,7 @@ use crate::base::fault::Fault;
 use crate::base::par;
 use crate::base::tolerance::{NEAR_MISS, Tolerance};
 use crate::geometry::closest;
-use crate::network::fault::{CurveEnd, NetworkFault};
+use crate::network::fault::{CurveEnd, EndFault};
 
 /// A curve as long as the model is cut into about this many stretches.
 const STRETCHES: f64 = 24.0;
@@ -156,7 +156,7 @@ fn miss(curves: &[NetCurve], end: End, other: usize, one: Option<usize>, toleran
     }
     let ends = [(false, target.curve.start()), (true, target.curve.end())];
     let other_end = ends.into_iter().find(|(_, p)| tolerance.same_point(*p, nearest.point)).map(|(last, _)| last);
-    let fault = NetworkFault::NearMiss {
+    let fault = EndFault::NearMiss {
         end: CurveEnd { of: net.curve.origin(), last, at },
         other: target.curve.origin(),
         nearest: nearest.point,

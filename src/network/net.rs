@@ -14,7 +14,7 @@ use super::snap::may_snap;
 use crate::base::fault::{Fault, Result};
 use crate::base::math::compare_points;
 use crate::base::tolerance::Tolerance;
-use crate::network::net_fault::NetFault;
+use crate::network::fault::NetFault;
 
 /// Places along a curve at which two curves are compared.
 const COMPARED: usize = 32;

@@ -7,7 +7,7 @@ use super::hits::{Contact, ranks};
 use crate::base::fault::Fault;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::closest;
-use crate::network::fault::NetworkFault;
+use crate::network::fault::GraphFault;
 
 /// Rounds of carrying nodes from curve to curve over shared stretches; chains of more curves than this are not one run.
 const ROUNDS: usize = 16;
@@ -79,7 +79,7 @@ pub fn match_stretches(curves: &[NetCurve], parts: &Parts, stations: &mut Statio
 fn note(curves: &[NetCurve], overlap: &Contact) -> Option<Fault> {
     let (s, to) = overlap.to?;
     let [owner, other] = overlap.curves.map(|k| curves[k as usize].curve.origin());
-    Some(NetworkFault::SharedRun { owner, other, run: (overlap.at, to), length: (s[0] - overlap.s[0]).abs() }.into())
+    Some(GraphFault::SharedRun { owner, other, run: (overlap.at, to), length: (s[0] - overlap.s[0]).abs() }.into())
 }
 
 /// Arc lengths of one side's stretch, ascending.

@@ -9,7 +9,7 @@ use crate::base::origin::Origin;
 use crate::base::tolerance::{SLIVER, Tolerance};
 use crate::geometry::Curve;
 use crate::geometry::query::closest::closest as closest_on_curve;
-use crate::network::fault::{CurveEnd, NetworkFault};
+use crate::network::fault::{ChainFault, CurveEnd};
 
 /// [`Chain::slice`].
 pub fn slice(chain: &Chain, (f0, f1): (f64, f64), tolerance: &Tolerance) -> Result<Chain> {
@@ -29,7 +29,7 @@ pub fn slice(chain: &Chain, (f0, f1): (f64, f64), tolerance: &Tolerance) -> Resu
     }
     if (f1 - f0).abs() <= least {
         let length = (f1 - f0).abs() * chain.length();
-        return Err(NetworkFault::NoLength { of: chain.origin(), at: chain.point(f0), length, tolerance: tolerance.point }.into());
+        return Err(ChainFault::NoLength { of: chain.origin(), at: chain.point(f0), length, tolerance: tolerance.point }.into());
     }
     let part = Chain::of_runs(runs_between(chain, f0.min(f1), f0.max(f1)), chain.origin());
     Ok(if f1 < f0 { part.reversed() } else { part })
@@ -90,7 +90,7 @@ pub fn join(parts: &[Chain], origin: Origin, tolerance: &Tolerance) -> Result<Ch
         let (end, start) = (pair[0].end(), pair[1].start());
         if !tolerance.same_point(end, start) {
             let shorter = pair.iter().map(Chain::length).fold(f64::INFINITY, f64::min);
-            return Err(NetworkFault::ChainBroken {
+            return Err(ChainFault::Broken {
                 a: CurveEnd { of: pair[0].origin(), last: true, at: end },
                 b: CurveEnd { of: pair[1].origin(), last: false, at: start },
                 reversed_fits: tolerance.same_point(end, pair[1].end()),
@@ -105,7 +105,7 @@ pub fn join(parts: &[Chain], origin: Origin, tolerance: &Tolerance) -> Result<Ch
         for (b, second) in &owned[k + 1..] {
             if let Some((s0, s1)) = shared_stretch(first, second, tolerance) {
                 let stretch = (first.point_at(s0), first.point_at(s1));
-                return Err(NetworkFault::ChainRepeats { a: *a, b: *b, stretch }.into());
+                return Err(ChainFault::Repeats { a: *a, b: *b, stretch }.into());
             }
         }
     }

@@ -7,7 +7,7 @@ use crate::base::fault::{Fault, Result};
 use crate::base::math::compare_points;
 use crate::base::origin::Origin;
 use crate::base::tolerance::{SNAP_SHARE, Tolerance};
-use crate::network::fault::{CurveEnd, NetworkFault};
+use crate::network::fault::{CurveEnd, EndFault};
 
 /// An end that `snap` looks at.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -75,7 +75,7 @@ pub fn snap(
             let apart = |b: usize| (!is_settled(a) || !is_settled(b)) && !tolerance.same_point(all[a], all[b]);
             if let Some(&b) = fixed[i + 1..].iter().find(|&&b| apart(b)) {
                 let settled = [a, b].into_iter().find(|k| is_settled(*k)).map(|k| ends[k].end.of);
-                return Err(NetworkFault::SnapFixed { a: ends[a].end, b: ends[b].end, snap: distance, asked, settled }.into());
+                return Err(EndFault::SnapFixed { a: ends[a].end, b: ends[b].end, snap: distance, asked, settled }.into());
             }
         }
         let fixed_points: Vec<DVec3> = fixed.iter().map(|&k| all[k]).collect();
@@ -95,7 +95,7 @@ pub fn snap(
         moves
             .iter()
             .filter(|m| m.to.distance(all[m.end]) > tolerance.rounding)
-            .map(|m| NetworkFault::Snapped { end: ends[m.end].end, to: m.to, length: ends[m.end].length, asked }.into()),
+            .map(|m| EndFault::Snapped { end: ends[m.end].end, to: m.to, length: ends[m.end].length, asked }.into()),
     );
     Ok(moves)
 }

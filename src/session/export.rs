@@ -11,7 +11,7 @@ use crate::base::limits::FILE_WORK;
 use crate::base::origin::Origin;
 use crate::base::work::{Budget, Exceeded};
 use crate::io::curve_files::polylines::{Drawing, Polyline};
-use crate::io::files::fault::FileFault;
+use crate::io::files::fault::{AccessFault, FormatFault, OutputFault};
 use crate::io::formats::choice::curve_format_for;
 use crate::io::formats::endings::{IGES, STEP, Sort, misfit};
 use crate::io::tables::json::{self, Json};
@@ -34,7 +34,7 @@ const MAX_SAMPLES: usize = 64;
 /// Writes one output; gives its row, and warnings about what the format cannot hold go to the sink of `cx`.
 pub fn write(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<OutputRow, Halt> {
     let within = Budget::new(FILE_WORK).within(|| written(cx, spec, files));
-    within.unwrap_or_else(|Exceeded| Err(FileFault::TooMuchWork { of: spec.path_origin, path: spec.path.clone() }.into()))
+    within.unwrap_or_else(|Exceeded| Err(OutputFault::TooMuchWork { of: spec.path_origin, path: spec.path.clone() }.into()))
 }
 
 fn written(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<OutputRow, Halt> {
@@ -86,7 +86,7 @@ fn complete(cx: &Cx, spec: &ExportSpec) -> Result<(), Halt> {
     }
     let Some(part) = cx.lacking(&surfaces) else { return Ok(()) };
     let of = spec.things.first().map_or(spec.origin, |thing| thing.1);
-    Err(FileFault::Incomplete {
+    Err(OutputFault::Incomplete {
         of,
         output: spec.origin,
         path: spec.path.clone(),
@@ -114,7 +114,7 @@ pub(super) type Written = (u64, Vec<Loss>);
 
 fn unsupported(of: Origin, what: String) -> Halt {
     let help = Some("export meshes, curves, or a list of records".to_owned());
-    FileFault::Unsupported { of, what, help, edits: Vec::new() }.into()
+    FormatFault::Unsupported { of, what, help, edits: Vec::new() }.into()
 }
 
 /// Colours of what imported CAD files give one, for files that hold them.
@@ -165,9 +165,9 @@ pub(super) fn write_file(
     fill: &mut dyn FnMut(&mut dyn Write) -> std::io::Result<()>,
 ) -> Result<u64, Halt> {
     files.write(path, fill).map_err(|error| match error {
-        FileError::Outside => FileFault::Outside { of, path: path.to_owned() }.into(),
-        FileError::Other(why) => FileFault::CannotWrite { of, path: path.to_owned(), why }.into(),
-        _ => FileFault::CannotWrite { of, path: path.to_owned(), why: "the system refuses it".to_owned() }.into(),
+        FileError::Outside => AccessFault::Outside { of, path: path.to_owned() }.into(),
+        FileError::Other(why) => AccessFault::CannotWrite { of, path: path.to_owned(), why }.into(),
+        _ => AccessFault::CannotWrite { of, path: path.to_owned(), why: "the system refuses it".to_owned() }.into(),
     })
 }
 
@@ -199,7 +199,7 @@ fn mesh(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<Written, Ha
 fn one_thing(spec: &ExportSpec) -> Halt {
     let second = spec.things.get(1).map_or(spec.origin, |thing| thing.1);
     let help = Some("one `export` for each, or one mesh of both".to_owned());
-    FileFault::Unsupported { of: second, what: "a file holds one mesh".to_owned(), help, edits: Vec::new() }.into()
+    FormatFault::Unsupported { of: second, what: "a file holds one mesh".to_owned(), help, edits: Vec::new() }.into()
 }
 
 /// Settings that mean something for meshes only.
@@ -208,7 +208,7 @@ pub(super) fn no_mesh_settings(spec: &ExportSpec) -> Result<(), Halt> {
     match said {
         Some((key, of)) => {
             let what = format!("`{key}:` is for meshes");
-            Err(FileFault::Unsupported { of, what, help: Some(format!("remove `{key}:`")), edits: vec![Edit::DropSetting] }.into())
+            Err(FormatFault::Unsupported { of, what, help: Some(format!("remove `{key}:`")), edits: vec![Edit::DropSetting] }.into())
         }
         None => Ok(()),
     }
@@ -223,7 +223,7 @@ fn no_misplaced(spec: &ExportSpec) -> Result<(), Halt> {
         {
             let what = format!("`{key}:` is for {format} files");
             let help = Some(format!("remove `{key}:`"));
-            return Err(FileFault::Unsupported { of: *of, what, help, edits: vec![Edit::DropSetting] }.into());
+            return Err(FormatFault::Unsupported { of: *of, what, help, edits: vec![Edit::DropSetting] }.into());
         }
     }
     Ok(())
@@ -286,7 +286,7 @@ fn records(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<Written,
     no_mesh_settings(spec)?;
     if let Some((_, of)) = spec.units {
         let what = "`units:` is for meshes and curves; records carry their units".to_owned();
-        return Err(FileFault::Unsupported { of, what, help: Some("remove `units:`".to_owned()), edits: vec![Edit::DropSetting] }.into());
+        return Err(FormatFault::Unsupported { of, what, help: Some("remove `units:`".to_owned()), edits: vec![Edit::DropSetting] }.into());
     }
     let mut rows = Vec::with_capacity(spec.things.len());
     for (value, origin) in &spec.things {

@@ -6,7 +6,7 @@ use super::plan::surfaces_of;
 use crate::base::fault::Say;
 use crate::base::origin::Origin;
 use crate::io::Files;
-use crate::io::files::fault::FileFault;
+use crate::io::files::fault::FormatFault;
 use crate::io::iges::write::{self, Scale, Shown, Thing};
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
@@ -67,7 +67,7 @@ pub(super) fn iges(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<
             },
             other => {
                 let what = format!("IGES holds points, curves, surfaces and shells, not {}", other.ty().words());
-                return Err(FileFault::Unsupported { of: *origin, what, help: None, edits: Vec::new() }.into());
+                return Err(FormatFault::Unsupported { of: *origin, what, help: None, edits: Vec::new() }.into());
             }
         }
         things[first..].iter_mut().for_each(|thing| thing.layers = layers.clone());
@@ -75,7 +75,7 @@ pub(super) fn iges(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<
     let scale = Scale { unit, model: scale.unwrap_or(1.0), tolerance };
     let sheet = write::sheet(&things, &scale).map_err(|what| {
         let help = help(spec, as_faces);
-        FileFault::Unsupported { of: spec.path_origin, what, help, edits: Vec::new() }
+        FormatFault::Unsupported { of: spec.path_origin, what, help, edits: Vec::new() }
     })?;
     let name = spec.path.rsplit('/').next().unwrap_or(&spec.path);
     put(spec, files, &mut |out| write::write(&sheet, name, &scale, out))

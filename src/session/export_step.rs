@@ -9,7 +9,7 @@ use crate::base::fault::Say;
 use crate::base::origin::Origin;
 use crate::io::cad::assembly::Node;
 use crate::io::cad::bodies::Faces;
-use crate::io::files::fault::FileFault;
+use crate::io::files::fault::FormatFault;
 use crate::io::step::write::{self, Measured, Scale, Schema, Setup, Shown, Thing};
 use crate::io::{Files, Loss};
 use crate::lang::eval::context::Cx;
@@ -68,7 +68,7 @@ pub(super) fn step(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<
 }
 
 fn unsupported(of: Origin, what: String) -> Halt {
-    FileFault::Unsupported { of, what, help: None, edits: Vec::new() }.into()
+    FormatFault::Unsupported { of, what, help: None, edits: Vec::new() }.into()
 }
 
 /// Area of a shell, and its volume where it closes.

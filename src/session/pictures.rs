@@ -17,7 +17,7 @@ use crate::base::tolerance::Tolerance;
 use crate::base::work::{Budget, Exceeded};
 use crate::draw::picture::{FORMATS, Format, Picture, Settings};
 use crate::draw::{Kind, Line, Mark, Scene as Drawing, faces, lines, meshes};
-use crate::io::files::fault::FileFault;
+use crate::io::files::fault::{FormatFault, OutputFault};
 use crate::io::{Files, Sort, ending_for};
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
@@ -56,7 +56,7 @@ impl PictureContext<'_> {
 /// Writes one picture; gives its row. `model` is the name of the script without its ending.
 pub fn write(cx: &mut Cx, spec: &PictureSpec, model: &str, files: &dyn Files, outputs: Outputs) -> Result<OutputRow, Halt> {
     let within = Budget::new(FILE_WORK).within(|| written(cx, spec, model, files, outputs));
-    within.unwrap_or_else(|Exceeded| Err(FileFault::TooMuchWork { of: spec.origin, path: spec.path.clone() }.into()))
+    within.unwrap_or_else(|Exceeded| Err(OutputFault::TooMuchWork { of: spec.origin, path: spec.path.clone() }.into()))
 }
 
 fn written(cx: &mut Cx, spec: &PictureSpec, model: &str, files: &dyn Files, outputs: Outputs) -> Result<OutputRow, Halt> {
@@ -92,7 +92,7 @@ fn written(cx: &mut Cx, spec: &PictureSpec, model: &str, files: &dyn Files, outp
 }
 
 pub(super) fn unsupported(of: Origin, what: &str, help: &str) -> Halt {
-    FileFault::Unsupported { of, what: what.to_owned(), help: Some(help.to_owned()), edits: Vec::new() }.into()
+    FormatFault::Unsupported { of, what: what.to_owned(), help: Some(help.to_owned()), edits: Vec::new() }.into()
 }
 
 fn format_of(spec: &PictureSpec) -> Result<Format, Halt> {

@@ -6,7 +6,7 @@ use std::path::Path;
 use super::disk::same_file;
 use super::store::Store;
 use crate::base::origin::Origin;
-use crate::io::files::fault::FileFault;
+use crate::io::files::fault::OutputFault;
 use crate::lang::eval::context::Cx;
 
 /// Says E812 for each file that several outputs of the script would write, and E813 for each output over the script, a
@@ -34,7 +34,7 @@ pub fn one_file_each(cx: &mut Cx, disk: &dyn Store, script: &str) -> BTreeSet<St
             let what =
                 if file == script { Some("the script itself") } else { read.contains(&file).then_some("a file that this script reads") };
             if let Some(what) = what {
-                cx.say(&FileFault::OverInput { of: *of, path: path.clone(), what: what.to_owned() }.into());
+                cx.say(&OutputFault::OverInput { of: *of, path: path.clone(), what: what.to_owned() }.into());
                 barred.insert(file.clone());
             }
         }
@@ -48,11 +48,11 @@ pub fn one_file_each(cx: &mut Cx, disk: &dyn Store, script: &str) -> BTreeSet<St
 }
 
 /// The fault for outputs that are one file: of a family when one place of the script says all of them.
-fn several(cx: &Cx, same: Vec<(Origin, String)>) -> FileFault {
+fn several(cx: &Cx, same: Vec<(Origin, String)>) -> OutputFault {
     let count = same.len();
     let mut places = BTreeSet::new();
     let mut outputs = same;
     outputs.retain(|(of, _)| places.insert(cx.span_of(*of)));
     let members = (outputs.len() == 1).then_some(count);
-    FileFault::SameFile { outputs, members }
+    OutputFault::SameFile { outputs, members }
 }

@@ -7,7 +7,7 @@ use crate::draw::color::{BACK, BAD_TO_GOOD, BELOW_TO_ABOVE, FRONT, LITTLE_TO_MUC
 use crate::draw::faces::Show;
 use crate::draw::meshes::{self, Measure};
 use crate::draw::{Paint, Scale, Scene as Drawing, Sheet};
-use crate::io::files::fault::FileFault;
+use crate::io::files::fault::FormatFault;
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
 use crate::lang::values::plans::PictureSpec;
@@ -97,7 +97,7 @@ fn values(drawing: &Drawing) -> impl Iterator<Item = f64> + '_ {
 fn needs(drawing: &Drawing, of: Origin, what: &str, help: &str) -> Result<(), Halt> {
     match values(drawing).next() {
         Some(_) => Ok(()),
-        None => Err(FileFault::Unsupported { of, what: what.to_owned(), help: Some(help.to_owned()), edits: Vec::new() }.into()),
+        None => Err(FormatFault::Unsupported { of, what: what.to_owned(), help: Some(help.to_owned()), edits: Vec::new() }.into()),
     }
 }
 

@@ -1,12 +1,12 @@
 //! Faces whose borders do not quite meet.
 
 use glam::DVec3;
-use lofting::base::fault::Fault;
+use lofting::base::fault::{Fault, Plain};
 use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
 use lofting::geometry::construct::build::{arc_through, circle, line};
 use lofting::mesh::Mesh;
-use lofting::model::fault::ModelFault;
+use lofting::model::fault::GluingFault;
 use lofting::network::Chain;
 use lofting::surface::Surface;
 use lofting::surface::blended::plane_face::bounded;
@@ -87,9 +87,11 @@ fn a_gap_as_wide_as_stated_is_glued_and_a_wider_one_is_an_error() {
     for (gap, code) in [(0.01 + 1e-7, "E711"), (0.0299, "E711"), (0.0301, "E618")] {
         let fault = glued(&two_squares(gap), 0.01).err().unwrap();
         assert_eq!(fault.code().0, code, "{gap}: {fault:?}");
+        let help = fault.describe(&Plain).help.unwrap_or_default();
+        assert!(code == "E711" || help.contains("`snap: 0.05`"), "{help}");
     }
     let fault = glued(&two_squares(0.02), 0.01).err().unwrap();
-    let Some(&ModelFault::EdgeMismatch { gap, at, .. }) = fault.of() else { panic!("another fault: {fault:?}") };
+    let Some(&GluingFault::EdgeMismatch { gap, at, .. }) = fault.of() else { panic!("another fault: {fault:?}") };
     assert!((gap - 0.02).abs() < 1e-9 && (at.x - 5.0).abs() < 0.021, "{gap} {at}");
     // Nothing stated: they are two faces.
     assert_eq!(of_surfaces(two_squares(0.02).to_vec(), tolerance(), None).err().unwrap().code().0, "E618");

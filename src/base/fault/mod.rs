@@ -1,8 +1,8 @@
 //! Everything that can go wrong or deserves a word, with measurements instead of text.
 //!
 //! The kernel returns a [`Fault`]; it knows points, gaps and [`Origin`]s but no source text, names or units.
-//! Each family, declared on the floor it speaks of, states its code, sentence, labels and help in [`Describe::describe`], asking a [`Say`] for names and
-//! quantities; `lang::diag` is the one place that turns the result into a diagnostic under the script.
+//! Each family, declared on the floor it speaks of, has one table of its codes, [`Describe::code`], and states sentence, labels and help in
+//! [`Describe::describe`], asking a [`Say`] for names and quantities; `lang::diag` is the one place that turns the result into a diagnostic under the script.
 //! Warnings and notes are faults as well: the letter of their code tells, and they travel in a `Vec<Fault>` beside
 //! the value.
 
@@ -28,12 +28,12 @@ pub type Result<T> = std::result::Result<T, Fault>;
 #[derive(Debug)]
 pub enum Fault {
     /// A fault of a family.
-    Of(Box<dyn Family>),
+    Family(Box<dyn Family>),
     /// Stopped from outside (Ctrl-C).
     Interrupted,
 }
 
-/// A code of `diagnostics.md`, for example `E501`; the letter is the severity.
+/// A code of `docs/codes/`, for example `E501`; the letter is the severity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Code(pub &'static str);
 
@@ -72,11 +72,9 @@ pub enum Subject {
     Call,
 }
 
-/// A fault in words, before its subjects are found in the script.
+/// A fault in words, before its subjects are found in the script. Its code is that of the fault.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
-    /// Code of `diagnostics.md`.
-    pub code: Code,
     /// One sentence without final dot.
     pub message: String,
     /// Culprits, the first one foremost, each with a few words.
@@ -91,8 +89,8 @@ pub struct Report {
 
 impl Report {
     /// A report with a sentence and nothing else yet.
-    pub fn new(code: &'static str, message: impl Into<String>) -> Self {
-        Self { code: Code(code), message: message.into(), labels: Vec::new(), help: None, notes: Vec::new(), edits: Vec::new() }
+    pub fn new(message: impl Into<String>) -> Self {
+        Self { message: message.into(), labels: Vec::new(), help: None, notes: Vec::new(), edits: Vec::new() }
     }
 
     /// Adds a label.
@@ -104,6 +102,11 @@ impl Report {
     /// Adds a label on an entity's expression.
     pub fn at(self, origin: Origin, text: impl Into<String>) -> Self {
         self.label(Subject::Entity(origin), text)
+    }
+
+    /// Adds labels on the expressions of two entities that are alike: "this curve" and "and this one".
+    pub fn both(self, a: Origin, b: Origin, text: &'static str) -> Self {
+        self.at(a, text).at(b, "and this one")
     }
 
     /// Sets the help.
@@ -171,9 +174,25 @@ impl Say for Plain {
 
 /// A family of faults that can say what happened.
 pub trait Describe {
-    /// Code, sentence, labels and help.
+    /// Code of `docs/codes/`.
+    fn code(&self) -> Code;
+    /// Sentence, labels and help.
     fn describe(&self, say: &dyn Say) -> Report;
 }
+
+/// The table of codes of a family, each variant with its own: `codes! { Open "E502", Nested "E662" }`. Behind a semicolon stand
+/// variants whose code depends on what they hold.
+macro_rules! codes {
+    ($($variant:ident $code:literal),+ $(; $($pattern:pat => $chosen:expr),+)?) => {
+        fn code(&self) -> $crate::base::fault::Code {
+            $crate::base::fault::Code(match self {
+                $(Self::$variant { .. } => $code,)+
+                $($($pattern => $chosen,)+)?
+            })
+        }
+    };
+}
+pub(crate) use codes;
 
 /// A fault of a family, whichever it is; every enumeration that can describe its variants is one.
 pub trait Family: Describe + Any + fmt::Debug + Send + Sync {
@@ -203,28 +222,31 @@ impl Fault {
     /// The fault as one of a family; `None` where it is of another one.
     pub fn of<T: Family>(&self) -> Option<&T> {
         match self {
-            Self::Of(fault) => (fault.as_ref() as &dyn Any).downcast_ref(),
+            Self::Family(fault) => (fault.as_ref() as &dyn Any).downcast_ref(),
             Self::Interrupted => None,
         }
     }
 
-    /// Code, sentence, labels and help.
+    /// Sentence, labels and help.
     pub fn describe(&self, say: &dyn Say) -> Report {
         match self {
-            Self::Of(fault) => fault.describe(say),
-            Self::Interrupted => Report::new("E999", "interrupted"),
+            Self::Family(fault) => fault.describe(say),
+            Self::Interrupted => Report::new("interrupted"),
         }
     }
 
-    /// Code of `diagnostics.md`.
+    /// Code of `docs/codes/`; found without describing the fault.
     pub fn code(&self) -> Code {
-        self.describe(&Plain).code
+        match self {
+            Self::Family(fault) => fault.code(),
+            Self::Interrupted => Code("E999"),
+        }
     }
 
     /// Whether both are the same variant of one family; found without describing either.
     pub fn same_kind(&self, other: &Self) -> bool {
         match (self, other) {
-            (Self::Of(a), Self::Of(b)) => a.is_like(b.as_ref()),
+            (Self::Family(a), Self::Family(b)) => a.is_like(b.as_ref()),
             (Self::Interrupted, Self::Interrupted) => true,
             _ => false,
         }
@@ -234,7 +256,7 @@ impl Fault {
 impl Clone for Fault {
     fn clone(&self) -> Self {
         match self {
-            Self::Of(fault) => Self::Of(fault.copied()),
+            Self::Family(fault) => Self::Family(fault.copied()),
             Self::Interrupted => Self::Interrupted,
         }
     }
@@ -243,7 +265,7 @@ impl Clone for Fault {
 impl PartialEq for Fault {
     fn eq(&self, other: &Self) -> bool {
         match (self, other) {
-            (Self::Of(a), Self::Of(b)) => a.equals(b.as_ref()),
+            (Self::Family(a), Self::Family(b)) => a.equals(b.as_ref()),
             (Self::Interrupted, Self::Interrupted) => true,
             _ => false,
         }
@@ -252,7 +274,7 @@ impl PartialEq for Fault {
 
 impl<T: Family> From<T> for Fault {
     fn from(fault: T) -> Self {
-        Self::Of(Box::new(fault))
+        Self::Family(Box::new(fault))
     }
 }
 

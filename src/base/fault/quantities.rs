@@ -26,6 +26,11 @@ pub fn round_down(length: f64) -> f64 {
     step * decade
 }
 
+/// The note that states the model's tolerance.
+pub fn tolerance_note(say: &dyn Say, tolerance: f64) -> String {
+    format!("the model's tolerance is {}", say.length(tolerance))
+}
+
 /// A length as it is typed: the unit sticks to the number, without trailing zeros.
 pub fn typed(say: &dyn Say, length: f64) -> String {
     let said = say.length(length);
@@ -33,4 +38,18 @@ pub fn typed(say: &dyn Say, length: f64) -> String {
     let number = if number.contains('.') && !number.contains('e') { number.trim_end_matches('0').trim_end_matches('.') } else { number };
     // A unit that shows too few digits must not turn the advice into a zero.
     if number.parse::<f64>().is_ok_and(|shown| shown == 0.0) { format!("{length:?}") } else { format!("{number}{unit}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn round_numbers_bracket_their_length() {
+        for (length, up, down) in [(0.3, 0.5, 0.2), (0.5, 0.5, 0.2), (1.0, 1.0, 0.5), (7.0, 10.0, 5.0), (1.5e-4, 2e-4, 1e-4)] {
+            assert!((round_up(length) / up - 1.0).abs() < 1e-12, "{length} up to {}", round_up(length));
+            assert!(round_above(length) > length && round_above(up) > up);
+            assert!((round_down(length) / down - 1.0).abs() < 1e-12, "{length} down to {}", round_down(length));
+        }
+    }
 }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Describe, Edit, Report, Say, Subject};
+use super::{Describe, Edit, Report, Say, Subject, codes};
 use crate::base::origin::Origin;
 use crate::base::text::decimals;
 
@@ -203,10 +203,28 @@ impl LengthRange {
 
 /// E306 in words.
 fn outside(argument: &'static str, found: String, range: &str) -> Report {
-    Report::new("E306", format!("`{argument}` must be {range}, got {found}")).label(Subject::Argument(argument), found)
+    Report::new(format!("`{argument}` must be {range}, got {found}")).label(Subject::Argument(argument), found)
+}
+
+/// E305 with its arguments; the edit drops the last one.
+fn exclusive(report: Report, arguments: &[&'static str]) -> Report {
+    let report = arguments.iter().enumerate().fold(report, |report, (k, argument)| {
+        report.label(Subject::Argument(argument), if k == 0 { "remove one of these" } else { "or this" })
+    });
+    match arguments.last() {
+        Some(last) => report.edit(Subject::Argument(last), Edit::DropArgument),
+        None => report,
+    }
 }
 
 impl Describe for ValueFault {
+    codes! {
+        OutsideRange "E306", LengthOutside "E306", NotItsPlane "E306", NotAcross "E306", Missing "E301", Exclusive "E305",
+        NoLinks "E211", NoFaces "E211", WrongKind "E211", Mixed "E211", NotOneEdge "E215", NothingSelected "W728",
+        NotMeshed "W224", OfNothing "W729", Raised "E903", NotInThisVersion "E230", Work "E217", StageWork "E217", RowWork "E217",
+        Limit "E217", LooseBox "W227"
+    }
+
     fn describe(&self, say: &dyn Say) -> Report {
         match self {
             Self::OutsideRange { argument, found, range } => outside(argument, found.clone(), range),
@@ -219,77 +237,67 @@ impl Describe for ValueFault {
                 outside(argument, format!("{} to it", say.angle(*angle)), &format!("at right angles to {to}"))
             }
             Self::Missing { function, what, example } => {
-                Report::new("E301", format!("`{function}` needs {what}")).label(Subject::Call, "missing here").help(*example)
+                Report::new(format!("`{function}` needs {what}")).label(Subject::Call, "missing here").help(*example)
             }
             Self::Exclusive { function, what, arguments, example } => {
-                let report = Report::new("E305", format!("`{function}` takes {what}")).help(*example);
-                let labels = arguments.iter().enumerate();
-                labels.fold(report, |r, (i, a)| {
-                    let words = if i == 0 { "remove one of these" } else { "or this" };
-                    let r = r.label(Subject::Argument(a), words);
-                    if i + 1 == arguments.len() { r.edit(Subject::Argument(a), Edit::DropArgument) } else { r }
-                })
+                exclusive(Report::new(format!("`{function}` takes {what}")).help(*example), arguments)
             }
             Self::NoLinks { of } => {
                 let message = format!("{} is construction geometry and has no links", say.quoted(*of, "this curve"));
-                let report = Report::new("E211", message).label(Subject::Call, "links are asked for here").at(*of, "made here");
+                let report = Report::new(message).label(Subject::Call, "links are asked for here").at(*of, "made here");
                 report.help("bind it with `curve`: then it joins the network")
             }
-            Self::NoFaces { mesh } => {
-                Report::new("E211", format!("`{mesh}` has no faces on surfaces")).label(Subject::Call, "asked for here")
-            }
+            Self::NoFaces { mesh } => Report::new(format!("`{mesh}` has no faces on surfaces")).label(Subject::Call, "asked for here"),
             Self::NotOneEdge { of, places } => {
                 let surface = say.quoted(*of, "this surface");
                 let message = match places.len() {
                     0 => format!("no edge of {surface} lies there"),
                     n => format!("{n} edges of {surface} lie there"),
                 };
-                let report = Report::new("E215", message).label(Subject::Call, "asked for here");
+                let report = Report::new(message).label(Subject::Call, "asked for here");
                 let shown = &places[..places.len().min(EDGES_SHOWN)];
                 say.points(shown).iter().fold(report, |r, p| r.note(format!("one has its middle at {p}")))
             }
-            Self::NothingSelected { of, keyword } => Report::new("W728", format!("this selects nothing for the {keyword}"))
+            Self::NothingSelected { of, keyword } => Report::new(format!("this selects nothing for the {keyword}"))
                 .at(*of, "an empty list")
                 .help("`report` what it selects from, or remove it"),
             Self::NotMeshed { of, group, meshes } => {
                 let meshes: Vec<String> = meshes.iter().map(|mesh| format!("`{mesh}`")).collect();
                 let message = format!("no member of the group `{group}` is in {}: no file has a set of it", meshes.join(" or "));
-                Report::new("W224", message).at(*of, "its members are not meshed").help("mesh its members too, or group what is meshed")
+                Report::new(message).at(*of, "its members are not meshed").help("mesh its members too, or group what is meshed")
             }
             Self::OfNothing { of, function, result } => {
-                Report::new("W729", format!("`{function}` of an empty list is {result}: this check tests nothing"))
+                Report::new(format!("`{function}` of an empty list is {result}: this check tests nothing"))
                     .at(*of, "an empty list")
                     .help("check that there is something first: `check len(list) > 0`")
             }
             Self::WrongKind { argument, wanted, found } => {
-                Report::new("E211", format!("`{argument}` takes {wanted}, got {found}")).label(Subject::Argument(argument), found.clone())
+                Report::new(format!("`{argument}` takes {wanted}, got {found}")).label(Subject::Argument(argument), found.clone())
             }
             Self::Mixed { argument, found, beside } => {
-                Report::new("E211", format!("{found} beside {beside}")).label(Subject::Argument(argument), "these must be of one kind")
+                Report::new(format!("{found} beside {beside}")).label(Subject::Argument(argument), "these must be of one kind")
             }
-            Self::Raised { message } => Report::new("E903", message.clone()).label(Subject::Call, "raised here"),
-            Self::NotInThisVersion { what } => {
-                Report::new("E230", format!("{what} is not in this version")).label(Subject::Call, "asked for here")
-            }
-            Self::Work => Report::new("E217", "this call exceeds its work limit")
+            Self::Raised { message } => Report::new(message.clone()).label(Subject::Call, "raised here"),
+            Self::NotInThisVersion { what } => Report::new(format!("{what} is not in this version")).label(Subject::Call, "asked for here"),
+            Self::Work => Report::new("this call exceeds its work limit")
                 .label(Subject::Call, "made here")
                 .note("the limit of one call is fixed; `--max-work` does not change it")
                 .help("use fewer or simpler parts; look for points that are far off by mistake"),
-            Self::StageWork { what } => Report::new("E217", format!("{what} exceeds its work limit"))
+            Self::StageWork { what } => Report::new(format!("{what} exceeds its work limit"))
                 .help("use fewer or simpler curves and surfaces; look for points that are far off by mistake"),
-            Self::RowWork { of, what } => Report::new("E217", format!("{what} exceeds its work limit"))
+            Self::RowWork { of, what } => Report::new(format!("{what} exceeds its work limit"))
                 .at(*of, "measured for the report")
                 .help("use fewer or simpler parts; look for points that are far off by mistake"),
             Self::LooseBox { of, by, share } => {
                 let (name, by) = (say.quoted(*of, "this surface"), say.length(*by));
                 let message = format!("the box of {name} may be too large by up to {by}, {} % of its diagonal", decimals(share * 100.0, 4));
-                Report::new("W227", message)
+                Report::new(message)
                     .at(*of, "has more equally extreme places than are examined")
                     .help("it contains the surface; boxes of parts of it (`split`) are tighter")
             }
-            Self::Limit { what, limit } => Report::new("E217", format!("{what} exceeds its limit"))
-                .label(Subject::Call, "made here")
-                .help(format!("the limit is {limit}")),
+            Self::Limit { what, limit } => {
+                Report::new(format!("{what} exceeds its limit")).label(Subject::Call, "made here").help(format!("the limit is {limit}"))
+            }
         }
     }
 }

@@ -15,7 +15,7 @@ use crate::geometry::construct::build::{all_different, composite, enough, finite
 use crate::geometry::construct::offset_build::{height_over, smooth_pieces};
 use crate::geometry::curves::composite::Composite;
 use crate::geometry::curves::curve::{Curve, Kind, Shape};
-use crate::geometry::data::fault::CurveFault;
+use crate::geometry::data::corner_fault::CornerFault;
 use crate::geometry::shapes::arc::EllipticArc;
 
 /// Steps of the radius from nothing to the wanted one, where nothing hinders.
@@ -81,7 +81,7 @@ pub fn treat(curve: &Curve, at: Option<&[DVec3]>, how: (Treatment, &'static str)
         Some(places) => plan.chosen(&all, places, NUDGE * size)?,
     };
     if chosen.is_empty() {
-        return Err(CurveFault::NoCorner { of: curve.origin(), at: None, nearest: None }.into());
+        return Err(CornerFault::NoCorner { of: curve.origin(), at: None, nearest: None }.into());
     }
     if matches!(how.0, Treatment::Round(_)) {
         chosen.iter().try_for_each(|corner| plan.check_plane(corner, size))?;
@@ -162,7 +162,7 @@ impl Plan {
             let nearest = (0..all.len()).min_by(|i, k| all[*i].at.distance(*p).total_cmp(&all[*k].at.distance(*p)));
             match nearest {
                 Some(i) if all[i].at.distance(*p) <= reach => taken[i] = true,
-                _ => return Err(CurveFault::NoCorner { of: self.origin, at: Some(*p), nearest: nearest.map(|i| all[i].at) }.into()),
+                _ => return Err(CornerFault::NoCorner { of: self.origin, at: Some(*p), nearest: nearest.map(|i| all[i].at) }.into()),
             }
         }
         Ok(all.iter().zip(taken).filter_map(|(corner, taken)| taken.then_some(*corner)).collect())
@@ -174,7 +174,7 @@ impl Plan {
         for i in [corner.sides.0, corner.sides.1] {
             let out = height_over(&self.sides[i], normal);
             if out > NUDGE * size {
-                return Err(CurveFault::CornerNotFlat { of: self.origin, at: corner.at, out }.into());
+                return Err(CornerFault::NotFlat { of: self.origin, at: corner.at, out }.into());
             }
         }
         Ok(())
@@ -232,8 +232,7 @@ impl Plan {
         let Some(ranges) = self.ranges(corners, self.treatment) else {
             let sizes = (0..corners.len()).map(|i| (self.largest(corners, i), corners[i].at));
             let (largest, at) = sizes.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, DVec3::ZERO));
-            let fault =
-                CurveFault::CornerTooNarrow { of: self.origin, argument: self.argument, wanted: self.treatment.size(), largest, at };
+            let fault = CornerFault::TooNarrow { of: self.origin, argument: self.argument, wanted: self.treatment.size(), largest, at };
             return Err(fault.into());
         };
         let mut pieces = Vec::new();

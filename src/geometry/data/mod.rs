@@ -1,5 +1,6 @@
 //! What all curves have in common: points with derivatives, and motions.
 
+pub mod corner_fault;
 pub mod fault;
 pub mod jet;
 pub mod motion;

@@ -1,7 +1,7 @@
 //! What a format cannot hold, and the warnings for it.
 
 use crate::base::origin::Origin;
-use crate::io::files::fault::FileFault;
+use crate::io::files::fault::OutputFault;
 
 /// What a format could not hold as it is.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -16,18 +16,18 @@ pub enum Loss {
 
 impl Loss {
     /// The warnings for the export `of` to `path` (as written): one for each thing left out, one for all new names.
-    pub fn faults(losses: &[Self], of: Origin, path: &str) -> Vec<FileFault> {
+    pub fn faults(losses: &[Self], of: Origin, path: &str) -> Vec<OutputFault> {
         let mut faults = Vec::new();
         let mut names = Vec::new();
         for loss in losses {
             match loss {
-                Self::LeftOut(what) => faults.push(FileFault::LeftOut { of, path: path.to_owned(), what: what.clone() }),
+                Self::LeftOut(what) => faults.push(OutputFault::LeftOut { of, path: path.to_owned(), what: what.clone() }),
                 Self::Renamed(renamed) if !renamed.family => names.push((renamed.from.clone(), renamed.to.clone())),
                 Self::Renamed(_) | Self::Unnamed(_) => {}
             }
         }
         if !names.is_empty() {
-            faults.push(FileFault::Renamed { of, path: path.to_owned(), names });
+            faults.push(OutputFault::Renamed { of, path: path.to_owned(), names });
         }
         faults
     }

@@ -2,19 +2,19 @@
 
 use crate::base::origin::Origin;
 use crate::io::curve_files::polylines::CurveFormat;
-use crate::io::files::fault::FileFault;
+use crate::io::files::fault::FormatFault;
 use crate::io::formats::endings::{Sort, ending_for, misfit};
 use crate::io::formats::list::{CURVE_FORMATS, FORMATS};
 use crate::io::mesh_files::format::Format;
 
 /// The mesh format that a path's ending chooses; E804 or E805 where it chooses none, E230 for one of a later version.
-pub fn format_for(of: Origin, path: &str) -> Result<&'static Format, FileFault> {
+pub fn format_for(of: Origin, path: &str) -> Result<&'static Format, FormatFault> {
     let ending = ending_for(of, path, Sort::Meshes)?;
     FORMATS.iter().find(|format| format.extensions.contains(&ending.as_str())).ok_or_else(|| misfit(of, path, Sort::Meshes))
 }
 
 /// The format for curves that a path's ending chooses; E804 or E805 where it chooses none, E230 for one of a later version.
-pub fn curve_format_for(of: Origin, path: &str) -> Result<&'static CurveFormat, FileFault> {
+pub fn curve_format_for(of: Origin, path: &str) -> Result<&'static CurveFormat, FormatFault> {
     let ending = ending_for(of, path, Sort::Curves)?;
     CURVE_FORMATS.iter().find(|format| format.name == ending).ok_or_else(|| misfit(of, path, Sort::Curves))
 }
@@ -52,8 +52,8 @@ mod tests {
 
     #[test]
     fn other_endings_say_what_there_is() {
-        assert!(matches!(curve_format_for(Origin::NONE, "a.glb"), Err(FileFault::LaterFormat { format: "glTF", .. })));
-        assert!(matches!(curve_format_for(Origin::NONE, "a.xyz"), Err(FileFault::NoSuchFormat { .. })));
-        assert!(matches!(curve_format_for(Origin::NONE, "a.inp"), Err(FileFault::Unsupported { .. })));
+        assert!(matches!(curve_format_for(Origin::NONE, "a.glb"), Err(FormatFault::LaterFormat { format: "glTF", .. })));
+        assert!(matches!(curve_format_for(Origin::NONE, "a.xyz"), Err(FormatFault::NoSuchFormat { .. })));
+        assert!(matches!(curve_format_for(Origin::NONE, "a.inp"), Err(FormatFault::Unsupported { .. })));
     }
 }

@@ -1,7 +1,7 @@
 //! Endings of files: what sorts of things each one holds, and what to say where something does not go into it.
 
 use crate::base::origin::Origin;
-use crate::io::files::fault::FileFault;
+use crate::io::files::fault::FormatFault;
 use crate::io::formats::list::{CURVE_FORMATS, FORMATS};
 
 /// What a script may put into a file.
@@ -76,27 +76,27 @@ impl Sort {
 }
 
 /// The ending of a path when it takes things of this sort; else E804, E805 or E230 says what it takes instead.
-pub fn ending_for(of: Origin, path: &str, sort: Sort) -> Result<String, FileFault> {
+pub fn ending_for(of: Origin, path: &str, sort: Sort) -> Result<String, FormatFault> {
     let ending = extension(path);
     if sort.endings().contains(&ending.as_str()) { Ok(ending) } else { Err(misfit(of, path, sort)) }
 }
 
 /// Why things of this sort do not go to a path: E805 for an ending that holds others, E230 for one of a later version, else E804.
-pub fn misfit(of: Origin, path: &str, sort: Sort) -> FileFault {
+pub fn misfit(of: Origin, path: &str, sort: Sort) -> FormatFault {
     let ending = extension(path);
     if let Some((_, format)) = LATER.iter().find(|(name, _)| *name == ending) {
-        return FileFault::LaterFormat { of, format };
+        return FormatFault::LaterFormat { of, format };
     }
     let held: Vec<&str> = SORTS.into_iter().filter(|other| other.endings().contains(&ending.as_str())).map(Sort::words).collect();
     if held.is_empty() {
-        return FileFault::NoSuchFormat { of, path: path.to_owned(), known: sort.endings() };
+        return FormatFault::NoSuchFormat { of, path: path.to_owned(), known: sort.endings() };
     }
     let held = match held.as_slice() {
         [all @ .., last] if !all.is_empty() => format!("{} and {last}", all.join(", ")),
         held => held.join(""),
     };
     let what = format!("{ending} holds {held}, not {}", sort.words());
-    FileFault::Unsupported { of, what, help: Some(sort.help()), edits: Vec::new() }
+    FormatFault::Unsupported { of, what, help: Some(sort.help()), edits: Vec::new() }
 }
 
 /// The ending of a path in lower case, without its dot.

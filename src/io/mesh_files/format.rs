@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use crate::base::fault::Edit;
 use crate::base::origin::Origin;
-use crate::io::files::fault::FileFault;
+use crate::io::files::fault::FormatFault;
 use crate::io::files::loss::Loss;
 use crate::io::mesh_files::deck::{Deck, Encoding, Options};
 use crate::io::mesh_files::element_shape::Shape;
@@ -30,7 +30,7 @@ pub struct Format {
 
 impl Format {
     /// E805 when the settings do not go with this format and mesh; asked before anything is written.
-    pub fn check(&self, of: Origin, deck: &Deck) -> Result<(), FileFault> {
+    pub fn check(&self, of: Origin, deck: &Deck) -> Result<(), FormatFault> {
         if let Some(encoding) = deck.options.encoding
             && !self.encodings.contains(&encoding)
         {
@@ -39,7 +39,7 @@ impl Format {
                 Encoding::Text => ("text", "binary"),
             };
             let what = format!("{} has no {asked} encoding", self.name.to_uppercase());
-            return Err(FileFault::Unsupported {
+            return Err(FormatFault::Unsupported {
                 of,
                 what,
                 help: Some(format!("encoding: {has}")),
@@ -49,7 +49,7 @@ impl Format {
         if self.name == "stl" && deck.mesh.triangles.is_empty() && deck.mesh.quads.is_empty() && !deck.mesh.nodes.is_empty() {
             let what = format!("STL holds triangles, and `{}` has none", deck.mesh.name);
             let help = Some("write its lines as .obj, .vtu or .msh".to_owned());
-            return Err(FileFault::Unsupported { of, what, help, edits: Vec::new() });
+            return Err(FormatFault::Unsupported { of, what, help, edits: Vec::new() });
         }
         let mut taken: Vec<(Shape, &str)> = Vec::new();
         for (name, of) in &deck.options.elements {
@@ -60,7 +60,7 @@ impl Format {
                     false => format!("`{other}` and `{name}` are both for {}, which can be only one of them", shape.words()),
                 };
                 let help = Some(format!("remove `{other}` or `{name}`"));
-                return Err(FileFault::Unsupported { of: *of, what, help, edits: Vec::new() });
+                return Err(FormatFault::Unsupported { of: *of, what, help, edits: Vec::new() });
             }
             taken.push((shape, name));
         }
@@ -80,11 +80,11 @@ impl Format {
 
     /// The shape of the mesh that one name of `element:` is for; E805 for a name that the format does not know or the mesh has
     /// no elements for.
-    fn element_shape(&self, of: Origin, deck: &Deck, name: &str) -> Result<Shape, FileFault> {
+    fn element_shape(&self, of: Origin, deck: &Deck, name: &str) -> Result<Shape, FormatFault> {
         if self.elements.is_empty() {
             let what = format!("{} has no element names, got `element: {name}`", self.name.to_uppercase());
             let help = Some("remove `element:`".to_owned());
-            return Err(FileFault::Unsupported { of, what, help, edits: vec![Edit::DropSetting] });
+            return Err(FormatFault::Unsupported { of, what, help, edits: vec![Edit::DropSetting] });
         }
         let present = Self::present(deck.mesh);
         let fitting = || {
@@ -96,7 +96,7 @@ impl Format {
         let Some((_, shape)) = self.elements.iter().find(|(known, _)| known.eq_ignore_ascii_case(name)) else {
             let what = format!("{} has no element `{name}`", self.name.to_uppercase());
             let (help, edits) = fitting();
-            return Err(FileFault::Unsupported { of, what, help, edits });
+            return Err(FormatFault::Unsupported { of, what, help, edits });
         };
         if let Some(meshed) = present.iter().find(|meshed| self.stands_for(*shape, **meshed)) {
             return Ok(*meshed);
@@ -105,7 +105,7 @@ impl Format {
         let has = if has.is_empty() { "no elements".to_owned() } else { has };
         let what = format!("`element: {name}` is for {}, but `{}` has {has}", shape.words(), deck.mesh.name);
         let (help, edits) = fitting();
-        Err(FileFault::Unsupported { of, what, help, edits })
+        Err(FormatFault::Unsupported { of, what, help, edits })
     }
 
     /// The name for elements of a shape: the one asked for, else the default.

@@ -8,7 +8,7 @@ use crate::base::bbox::Box3;
 use crate::base::tolerance::Tolerance;
 use crate::io::cad::healing::{Repair, Rule};
 use crate::io::cad::part::{Group, Options, Part, Unusable};
-use crate::io::files::fault::{FileFault, Malformed};
+use crate::io::files::fault::{ContentFault, Malformed};
 use crate::io::{iges, step};
 use crate::lang::declare::imports::File;
 use crate::lang::eval::context::Cx;
@@ -67,7 +67,7 @@ impl Cx<'_> {
         if !part.unusable.is_empty() {
             let faces = part.unusable.iter().map(|face| Malformed::line(face.line, format!("{}: {}", face.entity, face.cause))).collect();
             let (path, total, share) = (file.path.to_owned(), part.n_faces(), part.share_missing());
-            self.say(&FileFault::Unusable { of: file.origin, path, total, faces, share, whole: self.sink.whole }.into());
+            self.say(&ContentFault::Unusable { of: file.origin, path, total, faces, share, whole: self.sink.whole }.into());
         }
         Ok(value)
     }

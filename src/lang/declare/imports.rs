@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use crate::base::limits;
 use crate::base::origin::Origin;
-use crate::io::files::fault::{FileFault, Malformed};
+use crate::io::files::fault::{ContentFault, FormatFault, Malformed};
 use crate::io::tables::table::{Layout, Reading};
 use crate::io::{self, Cell, Json, Obj};
 use crate::lang::eval::bind::Signature;
@@ -41,7 +41,7 @@ pub(crate) struct File<'f> {
 
 impl File<'_> {
     pub fn malformed(&self, at: Malformed) -> Halt {
-        FileFault::Malformed { of: self.origin, path: self.path.to_owned(), at }.into()
+        ContentFault::Malformed { of: self.origin, path: self.path.to_owned(), at }.into()
     }
 
     /// Model units in one unit of the file.
@@ -55,7 +55,7 @@ impl Cx<'_> {
         let (written, origin) = self.path_text(code, path)?;
         let ending = written.rsplit_once('.').map_or(String::new(), |e| e.1.to_ascii_lowercase());
         if !ENDINGS.contains(&ending.as_str()) {
-            return Err(FileFault::NoSuchFormat { of: origin, path: written, known: ENDINGS.to_vec() }.into());
+            return Err(FormatFault::NoSuchFormat { of: origin, path: written, known: ENDINGS.to_vec() }.into());
         }
         let (header, unit) = self.import_args(code, args, &ending)?;
         let from = self.machine.at(code.module).path.clone();
@@ -119,11 +119,11 @@ impl Cx<'_> {
             if more > 0 && at.what.is_empty() {
                 at.what = "repaired".to_owned();
             }
-            self.say(&FileFault::Repaired { of: file.origin, path: file.path.to_owned(), at }.into());
+            self.say(&ContentFault::Repaired { of: file.origin, path: file.path.to_owned(), at }.into());
         }
         if more > 0 {
             let at = Malformed { line: 0, column: None, what: format!("{more} more places were skipped or repaired") };
-            self.say(&FileFault::Repaired { of: file.origin, path: file.path.to_owned(), at }.into());
+            self.say(&ContentFault::Repaired { of: file.origin, path: file.path.to_owned(), at }.into());
         }
     }
 

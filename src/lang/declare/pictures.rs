@@ -119,7 +119,7 @@ impl Cx<'_> {
             }
         }
         if let (Some(id), true) = (place(self, "up"), view.up_is_lost()) {
-            let text = "`up` runs along the line of sight, so nothing is up in the picture";
+            let text = "`up` is parallel to the line of sight";
             return Err(self.error(code, "E306", text, code.span(id), "the eye looks along this").help("a direction across it").stop());
         }
         Ok(view)

@@ -73,14 +73,9 @@ impl Diagnostic {
     }
 
     /// The one bridge from the kernel: `find` turns subjects into places, `say` speaks of entities and quantities as
-    /// the user does. With no subject found, the label falls back to the call.
+    /// the user does. With no subject found, the label falls back to the call. Labels on one place are joined.
     pub fn from_fault(fault: &Fault, find: impl Fn(Subject) -> Option<(FileId, Span)>, say: &dyn Say) -> Self {
-        Self::from_report(fault.describe(say), find)
-    }
-
-    /// A described fault with its subjects found. Labels on one place are joined.
-    pub fn from_report(report: Report, find: impl Fn(Subject) -> Option<(FileId, Span)>) -> Self {
-        let Report { code, message, labels: subjects, help, notes, edits } = report;
+        let Report { message, labels: subjects, help, notes, edits } = fault.describe(say);
         let fix = |(subject, edit)| find(subject).map(|(file, span)| Fix { file, span, edit });
         let fixes = edits.into_iter().filter_map(fix).collect();
         let mut labels: Vec<Label> = Vec::with_capacity(subjects.len());
@@ -95,7 +90,7 @@ impl Diagnostic {
         if labels.is_empty() {
             labels.extend(find(Subject::Call).map(|(file, span)| Label { file, span, text: "here".to_owned() }));
         }
-        Self { code, message, labels, help, notes, fixes, more: 0, folded: Vec::new() }
+        Self { code: fault.code(), message, labels, help, notes, fixes, more: 0, folded: Vec::new() }
     }
 
     /// With one more label.

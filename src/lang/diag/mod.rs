@@ -2,5 +2,7 @@
 
 pub mod codes;
 pub mod diagnostic;
+mod frame;
+mod paint;
 pub mod render;
 pub mod span;

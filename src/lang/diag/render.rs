@@ -10,22 +10,15 @@
 //!    ╰────
 //!   help: add `])` after `(1, 0, 0)`
 //! ```
-//!
-//! miette is handed only the lines that carry labels, long ones cut to a window around them: it cannot format beyond
-//! column 65 535, and nobody reads that far. It counts columns in bytes, so the place in the frame is ours.
-
-use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanContents};
 
 use crate::base::fault::Severity;
 use crate::base::limits::REPORTS_SHOWN;
-use crate::lang::diag::diagnostic::{Diagnostic, FileId, Label, SourceFile, Sources};
+use crate::lang::diag::diagnostic::{Diagnostic, FileId, Label, Sources};
+use crate::lang::diag::frame::frame;
+use crate::lang::diag::paint::{Paint, shortened};
 
-/// Characters of a line shown before and behind its labels when it is long.
-const WINDOW: usize = 100;
-/// Characters of the longest message that is shown whole.
-const WORDS: usize = 2000;
-/// Bytes of the longest line that is shown whole.
-const WHOLE_LINE: usize = 500;
+/// Places of equal reports that are listed.
+const PLACES_SHOWN: usize = 8;
 
 /// All reports of a run: sorted by place, equal ones counted, at most twenty in full and the rest counted.
 pub fn render_all(found: &[Diagnostic], sources: &Sources, colours: bool) -> String {
@@ -91,39 +84,33 @@ fn render_one(diagnostic: &Diagnostic, same: &[&Diagnostic], sources: &Sources, 
     for note in &diagnostic.notes {
         tail(&mut text, &paint.word("note:"), note);
     }
-    let more = diagnostic.more + same.iter().map(|d| 1 + d.more).sum::<usize>();
-    if same.is_empty() && more > 0 {
-        tail(&mut text, &paint.word("note:"), &format!("and {more} more like this one"));
-    }
-    if !same.is_empty() {
-        let mut places: Vec<String> = Vec::new();
-        for other in same.iter().take(8) {
-            let label = other.labels.first();
-            let place = label.and_then(|l| Some((sources.get(l.file)?, sources.place(l.file, l.span.start)?)));
-            places.extend(place.map(|(file, p)| format!("{}:{}:{}", file.name, p.line, p.column)));
-        }
-        let etc = if more > 8 { ", …" } else { "" };
-        let times = if more == 1 { "once more".to_owned() } else { format!("{more} times more") };
-        let colon = if places.is_empty() { "" } else { ": " };
-        tail(&mut text, &paint.word("note:"), &format!("the same {times}{colon}{}{etc}", places.join(", ")));
+    if let Some(words) = further(diagnostic, same, sources) {
+        tail(&mut text, &paint.word("note:"), &words);
     }
     text
+}
+
+/// How many further reports one stands for, and the first places of those elsewhere.
+fn further(diagnostic: &Diagnostic, same: &[&Diagnostic], sources: &Sources) -> Option<String> {
+    let elsewhere: Vec<&&Diagnostic> = same.iter().filter(|d| d.labels.is_empty() || d.place() != diagnostic.place()).collect();
+    let more = diagnostic.more + elsewhere.len() + same.iter().map(|d| d.more).sum::<usize>();
+    let place = |other: &&Diagnostic| {
+        let label = other.labels.first()?;
+        let (file, p) = (sources.get(label.file)?, sources.place(label.file, label.span.start)?);
+        Some(format!("{}:{}:{}", file.name, p.line, p.column))
+    };
+    let places: Vec<String> = elsewhere.into_iter().take(PLACES_SHOWN).filter_map(place).collect();
+    match (more, places.len()) {
+        (0, _) => None,
+        (_, 0) => Some(format!("and {more} more like this one")),
+        (_, all) if all == more => Some(format!("also at {}", places.join(", "))),
+        _ => Some(format!("and {more} more like this one, at {}, …", places.join(", "))),
+    }
 }
 
 /// `help:` or `note:` with its text, further lines set in.
 fn tail(text: &mut String, word: &str, lines: &str) {
     text.push_str(&format!("  {word} {}\n", shortened(lines).replace('\n', "\n        ")));
-}
-
-/// Words that quote something endless: their beginning and end. The JSON report has them whole.
-fn shortened(words: &str) -> std::borrow::Cow<'_, str> {
-    let total = words.chars().count();
-    if total <= WORDS {
-        return words.into();
-    }
-    let begin: String = words.chars().take(WORDS / 2).collect();
-    let end: String = words.chars().skip(total - WORDS / 4).collect();
-    format!("{begin}…{end}").into()
 }
 
 /// Files of the labels in the order in which they are named.
@@ -135,230 +122,6 @@ fn files(diagnostic: &Diagnostic) -> Vec<FileId> {
         }
     }
     files
-}
-
-/// One line of the script as it is shown, with its labels in bytes of the shown text.
-struct Row {
-    index: usize,
-    text: String,
-    labels: Vec<(usize, usize, String)>,
-}
-
-impl Row {
-    /// A place between two characters is marked under the one behind it, at the end of the line under a blank.
-    fn widen(&mut self) {
-        for (from, to, _) in &mut self.labels {
-            if from == to {
-                if *from == self.text.len() {
-                    self.text.push(' ');
-                }
-                *to = *from + self.text[*from..].chars().next().map_or(0, char::len_utf8);
-            }
-        }
-    }
-}
-
-/// The labelled lines of one file in a frame.
-fn frame(text: &mut String, source: &SourceFile, labels: &[&Label], number: usize, paint: &Paint) {
-    let rows = rows(source, labels);
-    let Some(first) = labels.first() else { return };
-    let place = source.place(first.span.start);
-    let width = rows.last().map_or(1, |row| (row.index + 1).to_string().len()).max(2);
-    let pad = " ".repeat(width + 1);
-    let corner = if number == 0 { '╭' } else { '├' };
-    text.push_str(&format!("{pad}{}\n", paint.frame(&format!("{corner}─[{}:{}:{}]", source.name, place.line, place.column))));
-    for row in &rows {
-        for (n, line) in drawn_in_tiers(row).iter().enumerate() {
-            let (number, bar) = if n == 0 { ((row.index + 1).to_string(), '│') } else { (String::new(), '·') };
-            let gutter = paint.frame(&format!("{number:>width$} {bar}"));
-            let line = if n == 0 { line.clone() } else { paint.label(line) };
-            text.push_str(format!("{gutter} {line}").trim_end_matches(' '));
-            text.push('\n');
-        }
-    }
-    text.push_str(&format!("{pad}{}\n", paint.frame("╰────")));
-}
-
-/// From and to within a line, with the words.
-type Mark = (usize, usize, String);
-
-/// The lines that carry labels, in order. A label over several lines marks what it covers of its first one.
-fn rows(source: &SourceFile, labels: &[&Label]) -> Vec<Row> {
-    let mut by_line: Vec<(usize, Vec<Mark>)> = Vec::new();
-    for label in labels {
-        let start = source.boundary(label.span.start) as usize;
-        let index = source.place(label.span.start).line - 1;
-        let (line_start, line) = source.line(index);
-        let from = (start - line_start).min(line.len());
-        let to = (source.boundary(label.span.end) as usize).saturating_sub(line_start).clamp(from, line.len());
-        let to = if line[from..to].trim_end().is_empty() { to } else { from + line[from..to].trim_end().len() };
-        match by_line.iter_mut().find(|(i, _)| *i == index) {
-            Some((_, marks)) => marks.push((from, to, shortened(&label.text).into_owned())),
-            None => by_line.push((index, vec![(from, to, shortened(&label.text).into_owned())])),
-        }
-    }
-    by_line.sort_by_key(|(index, _)| *index);
-    by_line
-        .into_iter()
-        .map(|(index, mut labels)| {
-            labels.sort_by_key(|&(from, to, _)| (from, to));
-            let (_, line) = source.line(index);
-            let mut row = Row { index, text: line.to_owned(), labels };
-            row.widen();
-            if line.len() > WHOLE_LINE {
-                cut(&mut row);
-            }
-            row
-        })
-        .collect()
-}
-
-/// Cuts a long line to a window around its first label; labels are clipped to it, those outside are left out.
-fn cut(row: &mut Row) {
-    let Some(&(first, first_end, _)) = row.labels.first() else { return };
-    let back = row.text[..first].char_indices().rev().nth(WINDOW - 1).map_or(0, |(at, _)| at);
-    let far =
-        row.labels.iter().map(|&(_, to, _)| to).filter(|&to| to <= first + 4 * WINDOW).max().unwrap_or(first_end).min(first + 4 * WINDOW);
-    let far = (first..=far).rev().find(|&at| row.text.is_char_boundary(at)).unwrap_or(first);
-    let ahead = row.text[far..].char_indices().nth(WINDOW).map_or(row.text.len(), |(at, _)| far + at);
-    let (before, behind) = (if back > 0 { "…" } else { "" }, if ahead < row.text.len() { "…" } else { "" });
-    row.labels.retain(|&(from, ..)| from <= ahead);
-    for (from, to, _) in &mut row.labels {
-        *from = *from - back + before.len();
-        *to = (*to).min(ahead) - back + before.len();
-    }
-    row.text = format!("{before}{}{behind}", &row.text[back..ahead]);
-}
-
-/// A line and the marks under it. Marks that cover each other stand under one another, the narrowest first.
-fn drawn_in_tiers(row: &Row) -> Vec<String> {
-    let mut tiers: Vec<Vec<Mark>> = Vec::new();
-    let mut marks: Vec<&Mark> = row.labels.iter().collect();
-    marks.sort_by_key(|(from, to, _)| (to - from, *from));
-    for mark in marks {
-        let free = |tier: &Vec<Mark>| tier.iter().all(|other| mark.1 <= other.0 || other.1 <= mark.0);
-        // Never above a narrower one that it covers.
-        let first = tiers.iter().rposition(|tier| !free(tier)).map_or(0, |k| k + 1);
-        match tiers.get_mut(first) {
-            Some(tier) => tier.push(mark.clone()),
-            None => tiers.push(vec![mark.clone()]),
-        }
-    }
-    let mut lines: Vec<String> = Vec::new();
-    for mut labels in tiers {
-        labels.sort_by_key(|&(from, to, _)| (from, to));
-        let drawn = drawn(&Row { index: row.index, text: row.text.clone(), labels });
-        lines.extend(drawn.into_iter().skip(usize::from(!lines.is_empty())));
-    }
-    lines
-}
-
-/// A line and the marks under it, as miette draws them; a single label stands behind its mark.
-fn drawn(row: &Row) -> Vec<String> {
-    let tabs = row.text.replace('\t', "    ");
-    let widen = |at: usize| at + 3 * row.text[..at].matches('\t').count();
-    let labels = row.labels.iter().map(|(from, to, text)| {
-        let (from, to) = (widen(*from), widen(*to));
-        LabeledSpan::new(Some(text.replace('\n', " ")), from, to - from)
-    });
-    let snippet = Snippet { line: OneLine(tabs.clone()), labels: labels.collect() };
-    let handler = GraphicalReportHandler::new_themed(GraphicalTheme::unicode_nocolor())
-        .with_width(100)
-        .with_wrap_lines(false)
-        .with_links(false)
-        .with_context_lines(0);
-    let mut text = String::new();
-    if handler.render_report(&mut text, &snippet).is_err() {
-        return vec![tabs];
-    }
-    // Only the lines between the corners of the frame are ours; their gutter is cut off.
-    let mut lines: Vec<String> = Vec::new();
-    for line in text.lines().skip_while(|l| !l.contains('╭')).skip(1) {
-        let Some((_, rest)) = line.split_once(if lines.is_empty() { '│' } else { '·' }) else { break };
-        lines.push(rest.strip_prefix(' ').unwrap_or(rest).to_owned());
-    }
-    if let [_, marks, label] = lines.as_mut_slice()
-        && let Some((_, words)) = label.split_once("╰── ")
-    {
-        *marks = format!("{} {words}", marks.trim_end());
-        lines.truncate(2);
-    }
-    lines
-}
-
-/// What miette is asked to draw.
-struct Snippet {
-    line: OneLine,
-    labels: Vec<LabeledSpan>,
-}
-
-/// A source of one line, given back whole whatever is asked.
-struct OneLine(String);
-
-impl SourceCode for OneLine {
-    fn read_span<'a>(&'a self, _: &SourceSpan, _: usize, _: usize) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
-        let span = SourceSpan::from((0, self.0.len()));
-        Ok(Box::new(MietteSpanContents::new(self.0.as_bytes(), span, 0, 0, 1)))
-    }
-}
-
-impl std::fmt::Debug for Snippet {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str("snippet")
-    }
-}
-
-impl std::fmt::Display for Snippet {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str("snippet")
-    }
-}
-
-impl std::error::Error for Snippet {}
-
-impl miette::Diagnostic for Snippet {
-    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        Some(Box::new(self.labels.iter().cloned()))
-    }
-    fn source_code(&self) -> Option<&dyn SourceCode> {
-        Some(&self.line)
-    }
-}
-
-/// Colours, or none.
-struct Paint {
-    on: bool,
-    severity: Severity,
-}
-
-impl Paint {
-    fn with(&self, code: &str, text: &str) -> String {
-        if self.on { format!("\x1b[{code}m{text}\x1b[0m") } else { text.to_owned() }
-    }
-
-    fn strong(&self) -> &'static str {
-        match self.severity {
-            Severity::Error => "1;31",
-            Severity::Warning => "1;33",
-            Severity::Note => "1;36",
-        }
-    }
-
-    fn head(&self, text: &str) -> String {
-        self.with(self.strong(), text)
-    }
-
-    fn frame(&self, text: &str) -> String {
-        self.with("2", text)
-    }
-
-    fn label(&self, text: &str) -> String {
-        self.with(&self.strong()[2..], text)
-    }
-
-    fn word(&self, text: &str) -> String {
-        self.with("36", text)
-    }
 }
 
 #[cfg(test)]
@@ -462,7 +225,9 @@ E901 × check failed
         let shown = render_all(&found, &sources(&text), false);
         assert_eq!(shown.matches("E201 ×").count(), 20);
         assert!(shown.find("message 0") < shown.find("message 2"));
-        assert!(shown.contains("  note: the same once more: hall.loft:2:1\n"));
+        assert!(shown.contains("  note: also at hall.loft:2:1\n"));
+        let again = [one(1, "twice".to_owned()), one(1, "twice".to_owned()).label(FileId(0), at(8, 9), "and there")];
+        assert!(!render_all(&again, &sources(&text), false).contains("note:"), "its own place is no other one");
         let found: Vec<Diagnostic> = (0..25).map(|n| one(n, format!("message {n}"))).collect();
         assert!(render_all(&found, &sources(&text), false).ends_with("\n… and 5 more errors\n"));
     }
@@ -476,9 +241,8 @@ E901 × check failed
         };
         let shown = |found: &[Diagnostic]| render_all(found, &sources(&"a\n".repeat(100)), false);
         assert!(shown(&[one(0, 12_345)]).contains("  note: and 12345 more like this one\n"));
-        assert!(
-            shown(&[one(30, 5), one(31, 3), one(32, 0)]).contains("  note: the same 10 times more: hall.loft:32:1, hall.loft:33:1, …\n")
-        );
+        let several = shown(&[one(30, 5), one(31, 3), one(32, 0)]);
+        assert!(several.contains("  note: and 10 more like this one, at hall.loft:32:1, hall.loft:33:1, …\n"), "{several}");
         let found: Vec<Diagnostic> = (0..28).map(|n| one(n, if n == 26 { 1000 } else { 0 })).collect();
         assert!(shown(&found).ends_with("\n… and 1008 more warnings\n"));
     }

@@ -49,7 +49,7 @@ impl Cx<'_> {
         let through_all = self.machine.stages > 0;
         // Of a circle through all curves one can be taken out.
         let outside = members.iter().copied().find(|m| through_all && self.may_stay_out(*m)).map(|m| self.stay_out(m));
-        let draft = self.error(code, "E203", format!("`{}` needs itself: {shown}", names[0]), span, "the circle closes here");
+        let draft = self.error(code, "E203", format!("`{}` depends on itself: {shown}", names[0]), span, "the cycle closes here");
         let draft = draft.labels(labels);
         match (outside, through_all) {
             (Some(help), _) => draft.help(help).note(ALL).stop(),
@@ -76,7 +76,7 @@ impl Cx<'_> {
         let code = Code { nodes, module: site.module, declaration: site.declaration };
         let span = self.machine_span(code);
         let names: Vec<String> = members.iter().map(|&(m, d)| self.declaration_name(m, d)).collect();
-        let text = format!("`{}` needs itself: {} → all curves and surfaces → {}", names[0], names.join(" → "), names[0]);
+        let text = format!("`{}` depends on itself: {} → all curves and surfaces → {}", names[0], names.join(" → "), names[0]);
         let help = self.may_stay_out(part).then(|| self.stay_out(part));
         let keyword = self.machine.at(part.0).script.declarations[part.1 as usize].keyword_span;
         let here = part == (site.module, site.declaration);

@@ -216,7 +216,7 @@ impl Cx<'_> {
             curve @ (Value::Curve(_) | Value::Link(..)) => self.as_chain(curve).map(|c| Value::Curve(c.reversed())),
             other => {
                 let found = self.kind(&other);
-                Err(self.error(code, "E211", format!("{found} has no opposite"), code.span(of), found).stop())
+                Err(self.error(code, "E211", format!("{found} cannot be negated"), code.span(of), found).stop())
             }
         }
     }

@@ -110,7 +110,7 @@ impl Cx<'_> {
                     Subject::Entity(origin) => self.span_of(origin),
                     _ => None,
                 };
-                Diagnostic::from_report(fault.describe(self), find)
+                Diagnostic::from_fault(fault, find, self)
             }
         }
     }
@@ -127,7 +127,7 @@ impl Cx<'_> {
             }
             Subject::Call => Some((file, span)),
         };
-        let mut diagnostic = Diagnostic::from_report(fault.describe(self), find);
+        let mut diagnostic = Diagnostic::from_fault(fault, find, self);
         let inside = self.machine.at(code.module).script.declarations[code.declaration as usize].span;
         let shown = |l: &Label| l.file == file && l.span.start >= inside.start && l.span.end <= inside.end;
         if !diagnostic.labels.iter().any(shown) {

@@ -1,6 +1,6 @@
 //! Shells glued once a run, whoever asks for what they measure.
 
-use crate::model::fault::ModelFault;
+use crate::model::fault::ShellFault;
 use std::sync::Arc;
 
 use crate::base::fault::Fault;
@@ -86,7 +86,7 @@ impl Cx<'_> {
         if !built.closed {
             let origin = |id: &SurfaceId| glued.scene.model.surfaces[id.index()].surface.origin();
             let free = built.free.iter().map(|(id, at, length)| (origin(id), *at, *length)).collect();
-            return Err(ModelFault::ShellNotClosed { shell: shell.origin, wanted: "volume", free }.into());
+            return Err(ShellFault::NotClosed { shell: shell.origin, wanted: "volume", free }.into());
         }
         Ok(glued.solid())
     }

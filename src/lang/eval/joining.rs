@@ -17,7 +17,7 @@ use crate::lang::syntax::scopes::bound;
 use crate::lang::values::origins::NO_MEMBER;
 use crate::lang::values::value::{ModuleId, Value};
 use crate::network::Chain;
-use crate::network::fault::{CurveEnd, NetworkFault};
+use crate::network::fault::{ChainFault, CurveEnd, EndFault};
 
 /// Most characters of a call that is typed out in a help.
 const SHOWN: usize = 120;
@@ -36,9 +36,9 @@ impl Cx<'_> {
     /// Puts the curve that fills a gap into the help of E502 and E503, where the script declares one.
     pub(crate) fn advise(&self, fault: &Fault, code: Code<'_>, id: ExprId, blame: &Blame, diagnostic: &mut Diagnostic) {
         let Some(tolerance) = self.tolerance else { return };
-        let (a, b, ordered) = match fault.of() {
-            Some(NetworkFault::BoundaryOpen { a, b, .. }) => (a, b, false),
-            Some(NetworkFault::ChainBroken { a, b, reversed_fits: false, snaps: false, .. }) => (a, b, true),
+        let (a, b, ordered) = match (fault.of(), fault.of()) {
+            (Some(EndFault::BoundaryOpen { a, b, .. }), _) => (a, b, false),
+            (_, Some(ChainFault::Broken { a, b, reversed_fits: false, snaps: false, .. })) => (a, b, true),
             _ => return,
         };
         let Some(filler) = self.filler(code.module, (a, b), &tolerance) else { return };

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::base::limits;
 use crate::base::origin::Origin;
 use crate::io::FileError;
-use crate::io::files::fault::FileFault;
+use crate::io::files::fault::{AccessFault, ContentFault};
 use crate::lang::diag::diagnostic::Diagnostic;
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
@@ -98,12 +98,12 @@ impl Cx<'_> {
         let from = self.machine.at(code.module).path.clone();
         let resolved = self.files.resolve(&from, &written).map_err(|e| file_fault(e, &written, origin))?;
         if let Some(circle) = self.circle(code.module, &resolved) {
-            return Err(FileFault::ImportCycle { of: origin, ring: circle }.into());
+            return Err(ContentFault::ImportCycle { of: origin, ring: circle }.into());
         }
         let bytes = self.files.read(&resolved, limits::SOURCE_BYTES).map_err(|e| file_fault(e, &written, origin))?;
         let Ok(text) = String::from_utf8(bytes) else {
             let what = "it is not UTF-8 text".to_owned();
-            return Err(FileFault::CannotRead { of: origin, path: written, similar: Vec::new(), why: what }.into());
+            return Err(AccessFault::CannotRead { of: origin, path: written, similar: Vec::new(), why: what }.into());
         };
         let label = self.program.names.text(bound.name).to_owned();
         let parent = self.machine.at(code.module).label.clone();
@@ -185,12 +185,12 @@ impl Cx<'_> {
 }
 
 /// What a file cannot be read for, as a fault.
-pub(crate) fn file_fault(error: FileError, path: &str, of: Origin) -> FileFault {
+pub(crate) fn file_fault(error: FileError, path: &str, of: Origin) -> AccessFault {
     let path = path.to_owned();
     match error {
-        FileError::Missing { similar } => FileFault::CannotRead { of, path, similar, why: String::new() },
-        FileError::Outside => FileFault::Outside { of, path },
-        FileError::TooLarge(bytes) => FileFault::TooLarge { of, path, bytes, limit: limits::DATA_BYTES },
-        FileError::Other(why) => FileFault::CannotRead { of, path, similar: Vec::new(), why },
+        FileError::Missing { similar } => AccessFault::CannotRead { of, path, similar, why: String::new() },
+        FileError::Outside => AccessFault::Outside { of, path },
+        FileError::TooLarge(bytes) => AccessFault::TooLarge { of, path, bytes, limit: limits::DATA_BYTES },
+        FileError::Other(why) => AccessFault::CannotRead { of, path, similar: Vec::new(), why },
     }
 }

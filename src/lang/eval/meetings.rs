@@ -15,7 +15,7 @@ use crate::network::Chain;
 use crate::network::meet;
 use crate::surface::Surface;
 use crate::surface::core::plane;
-use crate::surface::faults::CutFault;
+use crate::surface::faults::CrossingFault;
 use crate::surface::intersect::{with_curve, with_surfaces};
 
 /// The one place where two things meet; E507, E508, E509 name the candidates.
@@ -36,7 +36,7 @@ pub(crate) fn meet_once(cx: &mut Cx, a: &Value, b: &Value) -> Result<Value, Halt
                 [one] => Ok(Value::Curve(one.clone())),
                 other => {
                     let curves = other.iter().map(|c| (c.point(0.5), c.length())).collect();
-                    Err(Fault::from(CutFault::NotOneSection { of: cx.origin(), curves }).into())
+                    Err(Fault::from(CrossingFault::NotOneSection { of: cx.origin(), curves }).into())
                 }
             }
         }
@@ -104,7 +104,7 @@ pub(crate) fn cutters(cx: &mut Cx, surface: &Surface, by: Vec<Cutter>) -> Result
         let found = with_surfaces::with_surfaces(::std::slice::from_ref(surface), &faces, cx.origin(), &tolerance)?.curves;
         if found.is_empty() {
             let b = faces.first().map_or(Origin::NONE, Surface::origin);
-            return Err(Fault::from(CutFault::NoCurve { a: surface.origin(), b, touch: None, tolerance: tolerance.point }).into());
+            return Err(Fault::from(CrossingFault::NoCurve { a: surface.origin(), b, touch: None, tolerance: tolerance.point }).into());
         }
         chains.extend(found);
     }

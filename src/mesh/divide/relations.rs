@@ -9,7 +9,7 @@ use crate::mesh::border::layout::{Face, Layout};
 use crate::mesh::divide::equations::{Conflict, Relation, Unknown};
 use crate::mesh::divide::row_demand::RowDemand;
 use crate::mesh::divide::verdict::Verdict;
-use crate::mesh::request::fault::{MeshFault, MeshLimit};
+use crate::mesh::request::fault::{CountFault, FaceFault, MeshLimit, SizeFault};
 use crate::mesh::request::input::Input;
 use crate::mesh::request::methods::Elements;
 use crate::mesh::request::plan::Plan;
@@ -173,18 +173,18 @@ impl Relations {
             Conflict::Differ { relation, a, b } => {
                 let (surface, at) = place(*relation);
                 let says = |side: &(u32, Option<usize>)| (side.0, side.1.map_or(Origin::NONE, |s| written(s).1));
-                MeshFault::CountsDiffer { a: says(a), b: says(b), surface, at }.into()
+                CountFault::Differ { a: says(a), b: says(b), surface, at }.into()
             }
             Conflict::Endless { relation } => {
                 let (surface, at) = place(*relation);
                 let why = "its opposite sides are parts of one strip, so that no counts make them equal".to_owned();
-                MeshFault::CannotMap { surface, why, at }.into()
+                FaceFault::CannotMap { surface, why, at }.into()
             }
             Conflict::ThreeSides { relation, counts, written: by } => {
                 let mut by: Vec<(u32, Origin)> = by.iter().map(|s| written(*s)).collect();
                 by.sort_by_key(|b| b.1);
                 by.dedup_by_key(|b| b.1);
-                MeshFault::SidesDoNotClose { counts: *counts, written: by, surface: place(*relation).0 }.into()
+                CountFault::SidesDoNotClose { counts: *counts, written: by, surface: place(*relation).0 }.into()
             }
             Conflict::Odd { written: by, needs } => {
                 let at = layout.point(*needs, 0.5);
@@ -192,7 +192,7 @@ impl Relations {
                 let face = layout.faces.iter().find(on);
                 let surface = face.map_or(Origin::NONE, |f| input.model.surfaces[f.surface.index()].surface.origin());
                 let count = face.and_then(|face| odd_rule(plan, sizing, face)).or_else(|| by.map(written)).unwrap_or((0, Origin::NONE));
-                MeshFault::OddCount { count, surface, at }.into()
+                CountFault::Odd { count, surface, at }.into()
             }
             Conflict::TooCoarse { written: by, needs, least } => self.too_coarse(input, layout, written(*by), *needs, *least),
         }
@@ -206,8 +206,8 @@ impl Relations {
         let angle = plan.settings.angle_error.filter(|_| row.is_some_and(|r| r.limit == MeshLimit::AngleError));
         let limit = angle.map(|angle| (MeshLimit::AngleError, angle.1)).or_else(|| plan.bend_limit());
         match limit {
-            Some((limit, says)) if least > 3 || row.is_some() => MeshFault::CountTooCoarse { count, limit, says, needed: least, at }.into(),
-            _ => MeshFault::CountTooFew { count, needed: least, at }.into(),
+            Some((limit, says)) if least > 3 || row.is_some() => CountFault::TooCoarse { count, limit, says, needed: least, at }.into(),
+            _ => CountFault::TooFew { count, needed: least, at }.into(),
         }
     }
 
@@ -219,7 +219,7 @@ impl Relations {
         let limit = verdicts[worst].broken;
         let says = input.plan.limit(limit).map(|value| value.1);
         let at = crate::mesh::border::layout::middle(input, face);
-        MeshFault::NotReached { limit, says: says.unwrap_or(input.plan.origin), surface, reached: verdicts[worst].reached, at }.into()
+        SizeFault::NotReached { limit, says: says.unwrap_or(input.plan.origin), surface, reached: verdicts[worst].reached, at }.into()
     }
 }
 

@@ -17,11 +17,11 @@ use crate::mesh::data::face_mesh::{FaceMesh, element_ranges};
 use crate::mesh::data::mesh::Mesh;
 use crate::mesh::divide::verdict::Verdict;
 use crate::mesh::face::twins::{NodePair, is_upright, ordered, twins};
-use crate::mesh::request::fault::MeshFault;
+use crate::mesh::request::fault::ElementFault;
 use crate::mesh::request::input::Input;
 use crate::mesh::request::limits::Limits;
 use crate::mesh::request::methods::{Elements, Method};
-use crate::model::fault::ModelFault;
+use crate::model::fault::ContactFault;
 use crate::surface::{Nearest, Surface};
 
 /// An edge, or two nodes of an element, that two faces or more have, with these.
@@ -175,9 +175,9 @@ pub fn fault(input: &Input, layout: &Layout, mesh: &Mesh, (edge, faces): &Coinci
         if [0.25, 0.5, 0.75].into_iter().all(is_on_both) {
             let names = (surface(first).name.clone(), surface(second).name.clone());
             let (a, b) = (surface(first).surface.origin(), surface(second).surface.origin());
-            return ModelFault::ImprintOverlap { imprint: *imprint, a, b, names, at: one.0.at(p.midpoint(q)).point }.into();
+            return ContactFault::ImprintOverlap { imprint: *imprint, a, b, names, at: one.0.at(p.midpoint(q)).point }.into();
         }
     }
     let [a, b] = [first, second].map(|f| surface(f).surface.origin());
-    MeshFault::FallTogether { surfaces: [a, b], at: p.midpoint(q) }.into()
+    ElementFault::FallTogether { surfaces: [a, b], at: p.midpoint(q) }.into()
 }

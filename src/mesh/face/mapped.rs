@@ -8,7 +8,7 @@ use crate::mesh::data::face_geometry::{FaceGeometry, FaceNodes};
 use crate::mesh::data::face_mesh::FaceMesh;
 use crate::mesh::mapped::grid::{self, Grid};
 use crate::mesh::mapped::trilateral::{Blocks, Lattice, LatticeIds};
-use crate::mesh::request::fault::MeshFault;
+use crate::mesh::request::fault::{CountFault, FaceFault};
 use crate::mesh::request::input::Input;
 use crate::mesh::request::methods::Elements;
 
@@ -75,7 +75,7 @@ fn prepare_triangle(input: &Input, layout: &Layout, nodes: &Nodes, face: &Face) 
     }
     let Some(blocks) = Blocks::new(&values) else {
         let counts = [0, 1, 2].map(|k| ids[k].len() as u32 - 1);
-        return Err(MeshFault::SidesDoNotClose { counts, written: Vec::new(), surface: surface.origin() }.into());
+        return Err(CountFault::SidesDoNotClose { counts, written: Vec::new(), surface: surface.origin() }.into());
     };
     let mut places = vec![0; blocks.uv.len()];
     for (side, line) in blocks.sides.iter().zip(&ids) {
@@ -102,5 +102,5 @@ pub fn refuse_triangles(input: &Input, layout: &Layout, prepared: &[FaceMesh]) -
             places.push((input.model.surfaces[face.surface.index()].surface.origin(), face_mesh.triangles, pole));
         }
     }
-    if places.is_empty() { Ok(()) } else { Err(MeshFault::QuadsImpossible { mesh: input.plan.origin, places }.into()) }
+    if places.is_empty() { Ok(()) } else { Err(FaceFault::QuadsImpossible { mesh: input.plan.origin, places }.into()) }
 }

@@ -13,7 +13,7 @@ use crate::mesh::output::{lines, second_order};
 use crate::mesh::pipeline::attempt::{FinishedMesh, attempt};
 use crate::mesh::report::border_error;
 use crate::mesh::report::explain::Explanation;
-use crate::mesh::request::fault::MeshFault;
+use crate::mesh::request::fault::SizeFault;
 use crate::mesh::request::input::Input;
 use crate::mesh::size::sizing::Sizing;
 
@@ -65,7 +65,7 @@ fn keep_maps(layout: &mut Layout) -> bool {
 /// Halves the steps of the borders of faces made with as few triangles as may be that do not keep a limit: an element
 /// beside a long step of a border is tilted against the surface, however small it is. Whether there were any.
 fn halve_tilted(input: &Input, layout: &mut Layout, fault: &Fault) -> bool {
-    let Some(MeshFault::NotReached { surface, .. }) = fault.of() else { return false };
+    let Some(SizeFault::NotReached { surface, .. }) = fault.of() else { return false };
     let of = |face: &Face| input.model.surfaces[face.surface.index()].surface.origin();
     let mut any = false;
     for face in layout.faces.iter_mut().filter(|face| of(face) == *surface) {

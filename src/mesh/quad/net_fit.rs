@@ -17,7 +17,7 @@ use crate::mesh::quad::settings::{CELL_SINGLES, MIXED_SINGLES, NET_FIT};
 use crate::mesh::quad::smooth::Smoother;
 use crate::mesh::quad::split::split;
 use crate::mesh::quad::swap::Swapper;
-use crate::mesh::request::fault::{MeshFault, MeshLimit};
+use crate::mesh::request::fault::{MeshLimit, SizeFault};
 use crate::mesh::request::methods::{Elements, Method};
 use crate::mesh::request::size_requests::floor_keeps;
 use crate::mesh::request::work::allow;
@@ -79,7 +79,7 @@ impl NetFit<'_> {
         let setting = plan.limit(worst.limit);
         let reached = worst.over * setting.map_or(self.fit.face.size.0, |s| s.0);
         let (says, surface) = (setting.map_or(plan.origin, |s| s.1), self.fit.surface.origin());
-        Err(MeshFault::NotReached { limit: worst.limit, says, surface, reached, at: worst.at }.into())
+        Err(SizeFault::NotReached { limit: worst.limit, says, surface, reached, at: worst.at }.into())
     }
 
     /// One net for these lengths, with a work budget of its own by its number of elements.

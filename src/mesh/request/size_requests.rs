@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::base::fault::{Fault, Result};
-use crate::mesh::request::fault::{MeshFault, MeshLimit};
+use crate::mesh::request::fault::{MeshLimit, SizeFault};
 use crate::mesh::request::input::Input;
 use crate::mesh::request::plan::{Place, Refine};
 use crate::mesh::request::sources::{Body, Least, Source, Sources, pieces};
@@ -45,7 +45,7 @@ impl SizeRequests {
         if let Some(floor) = plan.settings.min_size
             && let Some(size) = written.clone().find(|s| s.0 < floor.0)
         {
-            return Err(MeshFault::BelowFloor { size, floor }.into());
+            return Err(SizeFault::BelowFloor { size, floor }.into());
         }
         let least = written.map(|s| s.0).fold(f64::INFINITY, f64::min);
         let floor = plan.settings.min_size.map_or_else(|| (SETTINGS.floor * size).min(least), |s| s.0);
@@ -74,7 +74,7 @@ fn sources_of(refine: &Refine, tag: u32) -> Vec<Source> {
 pub fn floor_keeps(input: &Input, needed: f64, at: DVec3) -> Fault {
     let plan = input.plan;
     let (limit, says) = plan.bend_limit().unwrap_or((MeshLimit::Size, plan.origin));
-    MeshFault::FloorKeeps { limit, says, floor: plan.settings.min_size.unwrap_or((needed, plan.origin)), needed, at }.into()
+    SizeFault::FloorKeeps { limit, says, floor: plan.settings.min_size.unwrap_or((needed, plan.origin)), needed, at }.into()
 }
 
 /// The least length that sources want on a patch, within 2 % of itself, where that is below `most`: rectangles

@@ -3,7 +3,7 @@
 use crate::base::fault::Result;
 use crate::base::text::real;
 use crate::mesh::border::layout::{Face, Layout, Uneven, middle};
-use crate::mesh::request::fault::MeshFault;
+use crate::mesh::request::fault::FaceFault;
 use crate::mesh::request::input::Input;
 use crate::mesh::request::methods::{Elements, Method};
 use crate::surface::{Domain, Surface};
@@ -27,12 +27,12 @@ pub fn choose(input: &Input, layout: &mut Layout) -> Result<()> {
         let (of, at) = (surface.origin(), middle(input, face));
         let borderless = face.sides.iter().all(|s| s.uses.is_empty());
         if let Some(why) = why.clone().filter(|_| face.method == Method::Mapped || borderless) {
-            return Err(MeshFault::CannotMap { surface: of, why, at }.into());
+            return Err(FaceFault::CannotMap { surface: of, why, at }.into());
         }
         face.free = face.method.is_free() || why.is_some();
         face.why = why.filter(|_| !face.method.is_free());
         if let Some(method) = face.method.of_triangles().filter(|_| face.takes_quads()) {
-            return Err(MeshFault::TrianglesOnly { of: input.plan.origin, method, surface: of, at }.into());
+            return Err(FaceFault::TrianglesOnly { of: input.plan.origin, method, surface: of, at }.into());
         }
     }
     Ok(())

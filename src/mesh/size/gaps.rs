@@ -9,7 +9,7 @@ use crate::base::fault::Result;
 use crate::base::par;
 use crate::mesh::border::layout::{Face, Layout};
 use crate::mesh::chart::face_border::places;
-use crate::mesh::request::fault::MeshFault;
+use crate::mesh::request::fault::SizeFault;
 use crate::mesh::request::input::Input;
 use crate::mesh::request::limits::Limits;
 use crate::model::segments::SegmentUse;
@@ -101,7 +101,7 @@ pub fn refuse(input: &Input, layout: &Layout, limits: &Limits, rows: &[Vec<Segme
         let all = rows.iter().filter(|_| is_off(input, face, surface)).flat_map(|row| row.off.iter().zip(&row.points));
         let (gap, at) = all.fold((0.0, DVec3::ZERO), |found, (gap, at)| if *gap > found.0 { (*gap, *at) } else { found });
         if gap > limit * (1.0 - MIN_LEFT_SHARE) {
-            return Err(MeshFault::GapTooWide { gap, limit: (limit, says), surface: surface.origin(), at }.into());
+            return Err(SizeFault::GapTooWide { gap, limit: (limit, says), surface: surface.origin(), at }.into());
         }
     }
     Ok(())

@@ -1,6 +1,6 @@
 //! Remarks on a mesh and on the rules of its plan.
 
-use crate::model::fault::ModelFault;
+use crate::model::fault::ContactFault;
 use glam::DVec3;
 
 use crate::base::fault::Fault;
@@ -92,7 +92,7 @@ impl Remark {
                 };
                 let names = names.clone();
                 let imprint = plan.imprint.is_some();
-                ModelFault::FacesTouch { within: plan.origin, a: surface(*a), b: surface(*b), names, how, at: *at, imprint }.into()
+                ContactFault::FacesTouch { within: plan.origin, a: surface(*a), b: surface(*b), names, how, at: *at, imprint }.into()
             }
             Self::Lost(lost) => lost.fault(input),
             Self::Unused { rule, why } => MeshFault::RuleUnused { rule: origin(*rule), why: why.clone() }.into(),

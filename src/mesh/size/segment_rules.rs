@@ -4,7 +4,7 @@ use crate::base::fault::Result;
 use crate::base::text::article;
 use crate::mesh::border::counts::share;
 use crate::mesh::border::layout::Layout;
-use crate::mesh::request::fault::MeshFault;
+use crate::mesh::request::fault::CountFault;
 use crate::mesh::request::input::Input;
 use crate::mesh::request::plan::{Rule, Target};
 use crate::mesh::size::rule_effects::RuleEffects;
@@ -110,7 +110,7 @@ impl SegmentRules {
     fn divide_line(&mut self, rule: &RuleAt, rank: u8, line: &RuleLine, near: f64, effects: &mut RuleEffects) -> Result<()> {
         let (index, rule) = (rule.index, rule.rule);
         if let Some((count, origin)) = rule.settings.count {
-            let shares = line.count_shares(count, near).map_err(|links| MeshFault::CountBelowLinks { count: (count, origin), links })?;
+            let shares = line.count_shares(count, near).map_err(|links| CountFault::BelowLinks { count: (count, origin), links })?;
             for (u, n) in line.uses.iter().zip(shares) {
                 settle(&mut self.division[u.segment], Ruled { rank, rule: index, value: RuleDivision::Count(n) }, "count", effects);
             }
@@ -153,7 +153,7 @@ impl SegmentRules {
             let weights: Vec<f64> = segments.iter().map(|s| layout.length(*s)).collect();
             let least = vec![1; segments.len()];
             let shares = share(count, &weights, near, &least)
-                .ok_or(MeshFault::CountBelowLinks { count: (count, origin), links: segments.len() as u32 })?;
+                .ok_or(CountFault::BelowLinks { count: (count, origin), links: segments.len() as u32 })?;
             for (s, n) in segments.iter().zip(shares) {
                 let rank = if matches!(rule.target, Target::Patches(_)) { PATCH } else { FACE };
                 settle(&mut self.division[*s], Ruled { rank, rule: *index, value: RuleDivision::Count(n) }, "count", effects);

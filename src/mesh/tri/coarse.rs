@@ -5,7 +5,7 @@ use glam::DVec2;
 use crate::base::fault::Result;
 use crate::base::job::Job;
 use crate::mesh::chart::parametric_surface::ParametricSurface;
-use crate::mesh::request::fault::{MeshFault, MeshLimit};
+use crate::mesh::request::fault::{MeshLimit, SizeFault};
 use crate::mesh::request::limits::Limits;
 use crate::mesh::request::size_requests::floor_keeps;
 use crate::mesh::request::sources::Sources;
@@ -52,7 +52,7 @@ impl FaceFit<'_> {
                     (_, Some(setting)) => (MeshLimit::AngleError, setting, ratio.angle),
                     _ => (MeshLimit::Size, plan.settings.size.unwrap_or((self.face.size.0, plan.origin)), 1.0),
                 };
-                Err(MeshFault::NotReached { limit, says: setting.1, surface: self.surface.origin(), reached: over * setting.0, at }.into())
+                Err(SizeFault::NotReached { limit, says: setting.1, surface: self.surface.origin(), reached: over * setting.0, at }.into())
             }
         }
     }

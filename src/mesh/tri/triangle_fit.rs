@@ -16,7 +16,7 @@ use crate::mesh::chart::parametric_surface::{SizeField, UniformSize};
 use crate::mesh::deviation::edge_length::{self, EdgePlace};
 use crate::mesh::deviation::poles;
 use crate::mesh::request::decider::{Decider, Tally, Why};
-use crate::mesh::request::fault::{MeshFault, MeshLimit};
+use crate::mesh::request::fault::{MeshLimit, SizeFault};
 use crate::mesh::request::limits::Limits;
 use crate::mesh::request::methods::{Elements, Method};
 use crate::mesh::request::size_requests::floor_keeps;
@@ -253,7 +253,7 @@ impl FaceFit<'_> {
         let plan = self.face_input.input.plan;
         let (says, at) = (plan.size_origin(), self.outline.p[0]);
         let reached = self.longest.inside;
-        Err(MeshFault::NotReached { limit: MeshLimit::Size, says, surface: self.surface.origin(), reached, at }.into())
+        Err(SizeFault::NotReached { limit: MeshLimit::Size, says, surface: self.surface.origin(), reached, at }.into())
     }
 
     /// Lengths by the bends at first, smaller where a triangle exceeds a limit.
@@ -283,7 +283,7 @@ impl FaceFit<'_> {
         let says = plan.limit(limit);
         let reached = if limit == MeshLimit::Size { self.longest.inside } else { worst.0 * says.map_or(0.0, |s| s.0) };
         let says = says.map_or(plan.origin, |s| s.1);
-        Err(MeshFault::NotReached { limit, says, surface: self.surface.origin(), reached, at }.into())
+        Err(SizeFault::NotReached { limit, says, surface: self.surface.origin(), reached, at }.into())
     }
 
     /// Lowers lengths where triangles exceed a limit; the worst of them with its place and the limit.

@@ -8,7 +8,7 @@ use crate::base::triangulate_points::PointsFault;
 use crate::mesh::border::layout::{Face, middle};
 use crate::mesh::chart::face_border::FaceBorder;
 use crate::mesh::chart::face_input::FaceInput;
-use crate::mesh::request::fault::MeshFault;
+use crate::mesh::request::fault::{CountFault, FaceFault};
 use crate::mesh::tri::tree::MAX_DEPTH;
 
 /// The fault of a face that was not made.
@@ -17,14 +17,14 @@ pub(crate) fn fault(face_input: &FaceInput, face: &Face, border: &FaceBorder, tr
     let place = |n: u32| border.ids.get(n as usize).map_or(DVec3::ZERO, |id| face_input.points[*id as usize]);
     match trouble {
         Trouble::Border(PointsFault::Crosses(a, b)) => {
-            MeshFault::BordersCross { surface, at: 0.5 * (place(a) + place(b)), size: face.size.0 }.into()
+            FaceFault::BordersCross { surface, at: 0.5 * (place(a) + place(b)), size: face.size.0 }.into()
         }
-        Trouble::Border(PointsFault::Same(a, _)) => MeshFault::BordersCross { surface, at: place(a), size: face.size.0 }.into(),
+        Trouble::Border(PointsFault::Same(a, _)) => FaceFault::BordersCross { surface, at: place(a), size: face.size.0 }.into(),
         Trouble::Border(PointsFault::Flat) | Trouble::Empty => no_area(face_input, face),
-        Trouble::Deep(at) => MeshFault::TreeTooDeep { surface, at, levels: MAX_DEPTH }.into(),
+        Trouble::Deep(at) => FaceFault::TreeTooDeep { surface, at, levels: MAX_DEPTH }.into(),
         Trouble::Odd => {
             let odd = face.segments().find(|s| face_input.nodes.count(*s) % 2 == 1).unwrap_or(0);
-            MeshFault::OddCount { count: (0, Origin::NONE), surface, at: face_input.layout.point(odd, 0.5) }.into()
+            CountFault::Odd { count: (0, Origin::NONE), surface, at: face_input.layout.point(odd, 0.5) }.into()
         }
         Trouble::Full => {
             let plan = face_input.input.plan;
@@ -38,7 +38,7 @@ pub(crate) fn fault(face_input: &FaceInput, face: &Face, border: &FaceBorder, tr
 
 pub(crate) fn no_area(face_input: &FaceInput, face: &Face) -> Fault {
     let surface = face_input.input.model.surfaces[face.surface.index()].surface.origin();
-    MeshFault::FaceEmpty { surface, at: middle(face_input.input, face) }.into()
+    FaceFault::Empty { surface, at: middle(face_input.input, face) }.into()
 }
 
 /// A result, or why there is none; the outer result is an interruption.

@@ -10,7 +10,7 @@ use crate::base::{par, work};
 use crate::mesh::border::touch::Kind;
 use crate::mesh::verify::contacts::ContactSearch;
 use crate::surface::Closest;
-use crate::surface::faults::CutFault;
+use crate::surface::faults::CrossingFault;
 use crate::surface::intersect::with_surfaces::with_surfaces;
 
 /// Bounds of the search for a common point of two faces whose elements cross.
@@ -145,7 +145,7 @@ impl ContactSearch<'_> {
             match common {
                 Ok(common) => common.curves.first().map(|curve| (Kind::Crossing, curve.point(0.5))),
                 Err(fault) => match fault.of() {
-                    Some(CutFault::RunAlong { at, .. }) => Some((Kind::Overlap, *at)),
+                    Some(CrossingFault::RunAlong { at, .. }) => Some((Kind::Overlap, *at)),
                     _ => Some((Kind::Unknown, scan.between(pairs[n].0, pairs[n].1))),
                 },
             }

@@ -18,7 +18,7 @@ use crate::mesh::request::input::Input;
 use crate::mesh::verify::contact_leaves::Leaves;
 use crate::mesh::verify::contact_scan::Scan;
 use crate::model::SurfaceId;
-use crate::model::fault::ModelFault;
+use crate::model::fault::ContactFault;
 use crate::surface::{Closest, Nearest};
 
 /// Every two surfaces of a mesh that touch, cross or cover each other without sharing nodes there, in the order of the plan; with the
@@ -45,7 +45,7 @@ pub fn refuse_overlaps(input: &Input, touches: &[Touch]) -> Result<()> {
     let Some(Touch { surfaces: (a, b), names, at, .. }) = touches.iter().find(|t| t.kind == Kind::Overlap) else { return Ok(()) };
     let origin = |place: usize| input.model.surfaces[input.plan.surfaces[place].0.index()].surface.origin();
     let (a, b, names) = (origin(*a), origin(*b), names.clone());
-    Err(ModelFault::ImprintOverlap { imprint: *imprint, a, b, names, at: *at }.into())
+    Err(ContactFault::ImprintOverlap { imprint: *imprint, a, b, names, at: *at }.into())
 }
 
 /// The contacts found so far, with what the search has computed.

@@ -6,7 +6,7 @@ use crate::mesh::border::layout::{Face, middle};
 use crate::mesh::chart::face_input::FaceInput;
 use crate::mesh::data::face_mesh::FaceMesh;
 use crate::mesh::data::mesh::Mesh;
-use crate::mesh::request::fault::{Close, MeshFault};
+use crate::mesh::request::fault::{Close, ElementFault};
 use crate::mesh::request::input::Input;
 use crate::mesh::request::methods::Method;
 use crate::mesh::verify::defect::Defect;
@@ -23,18 +23,18 @@ pub(crate) fn fault(face_input: &FaceInput, face: &Face, face_mesh: &FaceMesh, d
     let method = if face.free { word(face.method) } else { "mapped" };
     if let Some(turn) = face.turns().next() {
         let at = layout.point(turn.segment, if turn.against { 0.0 } else { 1.0 });
-        return MeshFault::ClosesTooNear { surface, method, at, close: Close::Turn }.into();
+        return ElementFault::ClosesTooNear { surface, method, at, close: Close::Turn }.into();
     }
     if face.halved > 0 {
         let is_pole = |n: u32| face.sides.iter().any(|side| side.pole.is_some_and(|pole| nodes.of_junction(pole) == n));
         let close = if defect.node().is_some_and(is_pole) { Close::Tip } else { Close::Seam };
-        return MeshFault::ClosesTooNear { surface, method, at, close }.into();
+        return ElementFault::ClosesTooNear { surface, method, at, close }.into();
     }
     let crowded = crowded(face_input, face, defect);
     if let Some(fault) = crowded.or_else(|| short(face_input, face, mesh)).or_else(|| folded(input, face, method)) {
         return fault;
     }
-    MeshFault::Unsound {
+    ElementFault::Unsound {
         mesh: (input.plan.origin, input.plan.name.clone()),
         surface,
         method,
@@ -49,7 +49,7 @@ pub(crate) fn fault(face_input: &FaceInput, face: &Face, face_mesh: &FaceMesh, d
 fn folded(input: &Input, face: &Face, method: &'static str) -> Option<Fault> {
     let surface = &input.model.surfaces[face.surface.index()].surface;
     let (at, turn) = surface.fold(input.tolerance)?;
-    Some(MeshFault::Folded { surface: surface.origin(), method, at, turn }.into())
+    Some(ElementFault::Folded { surface: surface.origin(), method, at, turn }.into())
 }
 
 /// E721 where borders and lines of a face cut each other into edges shorter than the distance of distinct cuts.

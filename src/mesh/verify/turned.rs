@@ -8,7 +8,7 @@ use crate::mesh::data::face_geometry::{FaceNodes, Free};
 use crate::mesh::data::face_mesh::FaceMesh;
 use crate::mesh::data::mesh::Mesh;
 use crate::mesh::data::quality::is_concave;
-use crate::mesh::request::fault::MeshFault;
+use crate::mesh::request::fault::ElementFault;
 use crate::mesh::request::input::Input;
 use crate::mesh::request::recall::RecallFace;
 use crate::surface::Surface;
@@ -43,7 +43,7 @@ fn first_fault(input: &Input, prepared: &[FaceMesh], found: Vec<Option<Turned>>)
             let surface = &input.model.surfaces[face_mesh.surface.index()].surface;
             let at = surface.point(uv.0, uv.1);
             let free = matches!(face_mesh.geometry.nodes, FaceNodes::Free(..));
-            return Err(MeshFault::Inverted { surface: surface.origin(), count, uv, at, free }.into());
+            return Err(ElementFault::Inverted { surface: surface.origin(), count, uv, at, free }.into());
         }
     }
     Ok(())

@@ -4,11 +4,11 @@ use crate::base::fault::{Fault, Result};
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::data::fault::CurveFault;
-use crate::network::net_fault::NetFault;
 use crate::surface::analysis::as_net::strips::Fit;
 use crate::surface::core::shape::Shape;
 use crate::surface::core::surface::Surface;
 use crate::surface::data::kind::{Domain, SurfaceKind};
+use crate::surface::faults::DeviationFault;
 use crate::surface::faults::SurfaceFault;
 use crate::surface::rails::rail::Rail;
 use crate::surface::rails::reparam::Map;
@@ -93,7 +93,7 @@ impl Surface {
         let trimmed = self.parts().trim.is_some();
         match self.to_net(tolerance)? {
             Some(form) if !trimmed => {
-                let told = |off, proved| NetFault::AsNet { net: origin, surface: self.origin(), off, proved }.into();
+                let told = |off, proved| DeviationFault::AsNet { net: origin, surface: self.origin(), off, proved }.into();
                 let note = match form.off {
                     Off::Exact => None,
                     Off::Bounded(off) => Some(told(off, true)),

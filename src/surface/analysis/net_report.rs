@@ -6,13 +6,13 @@ use crate::base::fault::Fault;
 use crate::base::origin::Origin;
 use crate::base::tolerance::{NUDGE, Tolerance};
 use crate::network::Chain;
-use crate::network::net_fault::NetFault;
 use crate::surface::closest::nearest::Nearest;
 use crate::surface::core::shape::Shape;
 use crate::surface::core::surface::Surface;
 use crate::surface::data::breaks::chain_breaks;
 use crate::surface::data::kind::SurfaceKind;
 use crate::surface::data::one_sided::OneSided;
+use crate::surface::faults::DeviationFault;
 use crate::surface::rails::rail::Rail;
 use crate::surface::shapes::blend::Blend;
 
@@ -81,7 +81,7 @@ impl Surface {
         let pairs = all.iter().filter(|gap| gap.by > tolerance.point).count();
         let widest = all.first().filter(|_| pairs > 0)?;
         let NetGap { by: gap, profile, guide, at } = *widest;
-        Some(NetFault::Gap { surface: self.origin(), profile, guide, gap, at, pairs }.into())
+        Some(DeviationFault::Gap { surface: self.origin(), profile, guide, gap, at, pairs }.into())
     }
 
     /// The curves that it was made through, those along v (sections of a sweep) first; none where it was not made through curves.

@@ -1,7 +1,7 @@
 //! Surfaces from a grid of curves: Coons, Lagrange transfinite, and the uniform trilateral
 //! [Koh & Park 1990, §4; Coons 1967].
 
-use crate::network::grid_fault::GridFault;
+use crate::network::fault::GridFault;
 use glam::DVec3;
 
 use crate::base::fault::{Fault, Result};
@@ -13,7 +13,7 @@ use crate::surface::core::shape::Shape;
 use crate::surface::core::surface::{Parts, Surface};
 use crate::surface::data::breaks::merge_kinks;
 use crate::surface::data::kind::{Domain, SurfaceKind};
-use crate::surface::faults::SurfaceFault;
+use crate::surface::faults::{BorderFault, SurfaceFault};
 use crate::surface::rails::rail::Rail;
 use crate::surface::rails::reparam::{Map, Reparam};
 use crate::surface::rails::side::{Border, Side};
@@ -254,7 +254,7 @@ fn trimmed(
     for (end, here, k) in [(first, from, 0), (last, to, family.across.len().saturating_sub(1))] {
         let length = (here - end).abs() * chain.length();
         if length > family.snap.max(tolerance.point) {
-            notes.push(SurfaceFault::EndTrimmed { curve: chain.origin(), border: border(k), end: chain.point(end), length }.into());
+            notes.push(BorderFault::EndTrimmed { curve: chain.origin(), border: border(k), end: chain.point(end), length }.into());
         }
     }
     let part = chain.slice(from.min(to), from.max(to), tolerance)?;
@@ -397,7 +397,7 @@ fn trilateral(grid: &Grid, settings: &Settings, tolerance: &Tolerance) -> Result
             if (here - end).abs() > near {
                 let border = border.map_or(Origin::NONE, |m| grid.chains[m.curve].origin());
                 let length = (here - end).abs() * chain.length();
-                notes.push(SurfaceFault::EndTrimmed { curve: chain.origin(), border, end: chain.point(end), length }.into());
+                notes.push(BorderFault::EndTrimmed { curve: chain.origin(), border, end: chain.point(end), length }.into());
                 ends[k] = here;
             }
         }

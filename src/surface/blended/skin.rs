@@ -7,7 +7,7 @@ use crate::base::math;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::network::Chain;
-use crate::network::net_fault::NetFault;
+use crate::network::fault::NetFault;
 use crate::surface::blended::coons::evenly;
 use crate::surface::blended::gordon::{CurveNet, Named, blended};
 use crate::surface::blended::skin_align::{Read, Section, aligned, distances, runs_back};
@@ -17,7 +17,7 @@ use crate::surface::core::surface::Surface;
 use crate::surface::data::flow_words::phrase;
 use crate::surface::data::kind::SurfaceKind;
 use crate::surface::data::one_sided::OneSided;
-use crate::surface::faults::{Construction, SurfaceFault};
+use crate::surface::faults::{Construction, DeviationFault, SurfaceFault};
 use crate::surface::rails::rail::Rail;
 use crate::surface::rails::side::{Border, Side};
 
@@ -122,7 +122,7 @@ pub fn skin(sections: &[Section], settings: &Settings, tolerance: &Tolerance) ->
         if off <= allowed || last {
             let section = if let Section::Curve(c) = &sections[k] { c.origin() } else { settings.origin };
             let given = nodes.len() - 1;
-            notes.push(NetFault::Smoothed { surface: settings.origin, section, off, at, spans, given }.into());
+            notes.push(DeviationFault::Smoothed { surface: settings.origin, section, off, at, spans, given }.into());
             return Ok((surface, notes));
         }
         within *= 0.5;

@@ -1,6 +1,6 @@
 //! Planes by their frame: unbounded, whole squares of faces, faces without a map.
 
-use crate::network::grid_fault::GridFault;
+use crate::network::fault::GridFault;
 use glam::DVec3;
 
 use crate::base::bbox::Box3;
@@ -13,7 +13,7 @@ use crate::network::Chain;
 use crate::surface::core::shape::Shape;
 use crate::surface::core::surface::{Parts, Surface};
 use crate::surface::data::kind::{Domain, SurfaceKind};
-use crate::surface::faults::{LoopRole, SurfaceFault};
+use crate::surface::faults::{BorderFault, LoopRole};
 use crate::surface::rails::boundary::{Step, end, samples, start, walked};
 use crate::surface::rails::side::{Border, Side};
 use crate::surface::shapes::frame::Frame;
@@ -100,7 +100,7 @@ pub(crate) fn fitted(walk: &[Step], tolerance: &Tolerance) -> Result<Frame> {
     let Some(normal) = math::unit(area, tolerance.point * size) else {
         let fault = GridFault::FlowUnknown {
             curves: walk.iter().map(|s| s.0.origin()).collect(),
-            why: crate::network::no_flow::NoFlow::TooFewCurves { given: walk.len() },
+            why: crate::network::fault::NoFlow::TooFewCurves { given: walk.len() },
         };
         return Err(fault.into());
     };
@@ -114,7 +114,7 @@ pub(crate) fn fitted(walk: &[Step], tolerance: &Tolerance) -> Result<Frame> {
         }
     }
     if off > tolerance.point {
-        return Err(SurfaceFault::PlaneNotFlat { curve, off, at, tolerance: tolerance.point }.into());
+        return Err(BorderFault::PlaneNotFlat { curve, off, at, tolerance: tolerance.point }.into());
     }
     let chord = end(&walk[0]) - start(&walk[0]);
     let eu = math::unit(chord.reject_from_normalized(normal), tolerance.point).unwrap_or_else(|| math::any_normal(normal));

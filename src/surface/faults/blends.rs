@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{Describe, Report, Say};
+use crate::base::fault::{Describe, Report, Say, codes};
 use crate::base::origin::Origin;
 
 /// Why two surfaces have no edge that a ball can roll along. Points are in model units.
@@ -86,6 +86,8 @@ pub enum BlendFault {
 }
 
 impl Describe for BlendFault {
+    codes! { TooLarge "E673", NoEdge "E674" }
+
     fn describe(&self, say: &dyn Say) -> Report {
         match self {
             Self::TooLarge { blend, a, b, radius, largest, at } => {
@@ -96,11 +98,11 @@ impl Describe for BlendFault {
                     say.point(*at),
                     say.length(floored(*largest))
                 );
-                Report::new("E673", message)
+                Report::new(message)
                     .at(*blend, "too large here")
                     .help("take a smaller `radius:`, or surfaces that extend farther from the edge")
             }
-            Self::NoEdge { a, b, why } => no_edge((*a, *b), why, say).at(*a, "this surface").at(*b, "and this one"),
+            Self::NoEdge { a, b, why } => no_edge((*a, *b), why, say).both(*a, *b, "this surface"),
         }
     }
 }
@@ -114,41 +116,40 @@ fn floored(length: f64) -> f64 {
 
 fn no_edge((a, b): (Origin, Origin), why: &NoBlend, say: &dyn Say) -> Report {
     let (x, y) = (say.quoted(a, "one surface"), say.quoted(b, "the other"));
-    let report = |message: String| Report::new("E674", message);
     match why {
-        NoBlend::Apart { touch: Some(at) } => report(format!("{x} and {y} meet in no edge: they touch at {}", say.point(*at))),
+        NoBlend::Apart { touch: Some(at) } => Report::new(format!("{x} and {y} meet in no edge: they touch at {}", say.point(*at))),
         NoBlend::Apart { touch: None } => {
-            report(format!("{x} and {y} meet in no edge")).help("draw them so that they meet: `meet(a, b)` is the list of the curves")
+            Report::new(format!("{x} and {y} meet in no edge")).help("draw them so that they meet: `meet(a, b)` is the list of the curves")
         }
         NoBlend::Several { middles } => {
             let places = say.points(middles).join(", ");
-            report(format!("{x} and {y} meet in {} edges, near {places}: a rounding needs one", middles.len()))
+            Report::new(format!("{x} and {y} meet in {} edges, near {places}: a rounding needs one", middles.len()))
                 .help("cut one of them first, `trim(s, by: …, keep: …)`, so that one edge is left")
         }
-        NoBlend::Corner { at } => report(format!("the edge of {x} and {y} has a corner at {}", say.point(*at)))
+        NoBlend::Corner { at } => Report::new(format!("the edge of {x} and {y} has a corner at {}", say.point(*at)))
             .help("round the corner of the curve first, or divide the surfaces there and blend them one by one"),
         NoBlend::Tangent { at } => {
-            report(format!("{x} and {y} are tangent to each other at {}: there is no edge to round", say.point(*at)))
+            Report::new(format!("{x} and {y} are tangent to each other at {}: there is no edge to round", say.point(*at)))
         }
         NoBlend::EndsInside { surface, at } => {
             let name = say.quoted(*surface, "a surface");
-            report(format!("the rounding of {x} and {y} ends inside {name} at {}, so it cuts off no part of it", say.point(*at)))
+            Report::new(format!("the rounding of {x} and {y} ends inside {name} at {}, so it cuts off no part of it", say.point(*at)))
                 .help(format!("let {name} end where the edge does, at right angles to it, or close the edge"))
         }
         NoBlend::Leaves { surface, at } => {
             let name = say.quoted(*surface, "a surface");
-            report(format!("the rounding of {x} and {y} crosses the border of {name} at {}", say.point(*at)))
+            Report::new(format!("the rounding of {x} and {y} crosses the border of {name} at {}", say.point(*at)))
                 .help(format!("take a smaller `radius:`, or blend before {name} is cut there"))
         }
         NoBlend::KeepOnEdge { surface, at } => {
             let name = say.quoted(*surface, "a surface");
-            report(format!(
+            Report::new(format!(
                 "`keep:` does not determine which side of {name} stays: along the surface the point is on the edge, at {}",
                 say.point(*at)
             ))
             .help(format!("{name} extends past the edge: choose a point away from the edge along both surfaces"))
         }
-        NoBlend::NoRadius { at } => report(format!("no ball touches both {x} and {y} near {}", say.point(*at)))
+        NoBlend::NoRadius { at } => Report::new(format!("no ball touches both {x} and {y} near {}", say.point(*at)))
             .help("`-s` puts the ball on the other side of a surface"),
     }
 }

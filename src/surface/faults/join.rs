@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{Describe, Report, Say};
+use crate::base::fault::{Describe, Report, Say, codes};
 use crate::base::origin::Origin;
 
 /// E722: why surfaces are not joined. Lengths and points are in model units.
@@ -36,26 +36,26 @@ pub enum JoinFault {
 }
 
 impl Describe for JoinFault {
+    codes! { Apart "E722", NotInRow "E722", NotFourSided "E722" }
+
     fn describe(&self, say: &dyn Say) -> Report {
-        let report = |message: String| Report::new("E722", message);
         match self {
             Self::Apart { a, b, gap, at } => {
                 let (x, y) = (say.quoted(*a, "one surface"), say.quoted(*b, "the other"));
                 let (gap, at) = (say.length(*gap), say.point(*at));
-                report(format!("{x} and {y} share no whole border; their nearest borders are {gap} apart, at {at}"))
-                    .at(*a, "this surface")
-                    .at(*b, "and this one")
+                Report::new(format!("{x} and {y} share no whole border; their nearest borders are {gap} apart, at {at}"))
+                    .both(*a, *b, "this surface")
                     .help("divide the longer border first, `split(s, by: …)`, or draw both on one curve")
             }
             Self::NotInRow { a, b, c } => {
                 let (x, y, z) = (say.quoted(*a, "one surface"), say.quoted(*b, "another"), say.quoted(*c, "a third"));
-                report(format!("{x} meets {y} and {z} on sides that are not opposite: they do not follow one another"))
+                Report::new(format!("{x} meets {y} and {z} on sides that are not opposite: they do not follow one another"))
                     .at(*a, "in the middle")
                     .at(*b, "on one side")
                     .at(*c, "on another")
                     .help("a `shell` holds surfaces that meet in any way; `join` those of one row")
             }
-            Self::NotFourSided { a } => report(format!("{} has no four sides that u and v run along", say.quoted(*a, "one surface")))
+            Self::NotFourSided { a } => Report::new(format!("{} has no four sides that u and v run along", say.quoted(*a, "one surface")))
                 .at(*a, "trimmed, or of other than four sides")
                 .help("join whole surfaces first and trim the whole; a `shell` holds any surfaces"),
         }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{Describe, Edit, Report, Say, Subject};
+use crate::base::fault::{Describe, Edit, Report, Say, Subject, codes};
 use crate::base::origin::Origin;
 
 /// What the curves of a loop were given for.
@@ -109,30 +109,42 @@ pub enum LoopFault {
 }
 
 impl Describe for LoopFault {
+    codes! {
+        Open "E502", ClosedAmong "E502", Outside "E612", Nested "E662", Twice "E663";
+        Self::Meet { outer, .. } => if *outer { "E612" } else { "E661" },
+        Self::Repeated { b: (_, earlier), .. } => if earlier.is_none() { "E612" } else { "E661" }
+    }
+
     fn describe(&self, say: &dyn Say) -> Report {
         match self {
-            Self::Open { .. } => open(self, say),
+            Self::Open { of, ends, closes, role, together, tolerance } => {
+                closing(open(*of, *ends, (*role, *tolerance), say), *of, *closes, together, say)
+            }
             Self::ClosedAmong { given, closed, open, role } => closed_among(given, (closed, open), *role, say),
             Self::Outside { hole, outer, trimming, at } => {
                 let (which, around) = (say.quoted(*hole, "the hole"), say.quoted(*outer, "the surface"));
-                Report::new("E612", format!("{which} is not inside the outer loop {around}: its point {} is outside", say.point(*at)))
+                Report::new(format!("{which} is not inside the outer loop {around}: its point {} is outside", say.point(*at)))
                     .at(*hole, "this hole")
                     .at(*outer, "the outer loop")
                     .at(*trimming, "trimmed here")
                     .help("a hole lies wholly inside; where it cuts the border, make one outer loop of both")
             }
-            Self::Meet { .. } => meet(self, say),
+            Self::Meet { a, b, outer, trimming, places, run, apart, tolerance } => {
+                let report = meet((*a, *b), *outer, *trimming, (places, *run), say);
+                // Curves that were carried to a surface are up to a quarter of the tolerance off.
+                if *apart > 0.5 * tolerance { report.note(apart_there(*apart, *tolerance, say)) } else { report }
+            }
             Self::Repeated { a, b, trimming } => repeated(*a, *b, *trimming, say),
             Self::Nested { inner, around, trimming, at } => {
                 let (which, other) = (say.quoted(*inner, "one hole"), say.quoted(*around, "another one"));
-                Report::new("E662", format!("the hole {which} lies inside the hole {other}, at {}", say.point(*at)))
+                Report::new(format!("the hole {which} lies inside the hole {other}, at {}", say.point(*at)))
                     .at(*inner, "this hole")
                     .at(*around, "inside this one")
                     .at(*trimming, "trimmed here")
                     .help(format!("leave {which} out; an island in a hole is a surface of its own"))
             }
             Self::Twice { of, argument, places, hole } => {
-                let report = Report::new("E663", format!("{} is given twice", say.quoted(*of, "one curve"))).help("give each curve once");
+                let report = Report::new(format!("{} is given twice", say.quoted(*of, "one curve"))).help("give each curve once");
                 match hole {
                     Some(k) => report.label(Subject::Item(argument, *k), "in this loop").at(*of, "this curve"),
                     None => report
@@ -145,28 +157,30 @@ impl Describe for LoopFault {
     }
 }
 
-fn open(fault: &LoopFault, say: &dyn Say) -> Report {
-    let LoopFault::Open { of, ends, closes, role, together, tolerance } = fault else { return Report::new("E502", "the loop is open") };
-    let name = say.quoted(*of, "the curve");
+/// A loop whose one curve does not close.
+fn open(of: Origin, ends: (DVec3, DVec3), (role, tolerance): (LoopRole, f64), say: &dyn Say) -> Report {
     let what = match role {
         LoopRole::Plane => "the boundary does not close",
         LoopRole::Outer => "the outer loop does not close",
         LoopRole::Hole(_) => "the hole does not close",
     };
-    let (start, end) = say.pair(ends.0, ends.1);
-    let report = Report::new("E502", format!("{what}: {name} starts at {start} and ends at {end}")).at(*of, "an open curve").note(format!(
-        "the gap is {}; the model's tolerance is {}",
-        say.length(ends.0.distance(ends.1)),
-        say.length(*tolerance)
-    ));
+    let (name, (start, end)) = (say.quoted(of, "the curve"), say.pair(ends.0, ends.1));
+    let (gap, tolerance) = (say.length(ends.0.distance(ends.1)), say.length(tolerance));
+    Report::new(format!("{what}: {name} starts at {start} and ends at {end}"))
+        .at(of, "an open curve")
+        .note(format!("the gap is {gap}; the model's tolerance is {tolerance}"))
+}
+
+/// What closes the loop: the other curves of its hole, a setting of its constructor, or a further curve.
+fn closing(report: Report, of: Origin, closes: Option<&'static str>, together: &[Origin], say: &dyn Say) -> Report {
     let names: Vec<String> = together.iter().map(|o| say.name(*o)).collect();
     match closes {
         _ if !names.is_empty() && names.iter().all(|n| !n.is_empty()) => {
             report.help(format!("curves of one hole stand in a list of their own: `holes: [[{}]]`", names.join(", ")))
         }
-        Some(word) => report
-            .help(format!("`closed: true` in the `{word}` closes it"))
-            .edit(Subject::Entity(*of), Edit::Add("closed: true".to_owned())),
+        Some(word) => {
+            report.help(format!("`closed: true` in the `{word}` closes it")).edit(Subject::Entity(of), Edit::Add("closed: true".to_owned()))
+        }
         None => report.help("add a curve that joins these two points"),
     }
 }
@@ -182,7 +196,7 @@ fn closed_among(given: &[Origin], (closed, open): (&[Origin], &[Origin]), role: 
         }
         all => format!("{} are all closed", all.join(", ")),
     };
-    let mut report = Report::new("E502", format!("{many}; a loop of several curves consists of open ones"));
+    let mut report = Report::new(format!("{many}; a loop of several curves consists of open ones"));
     for of in closed.iter().take(SHOWN) {
         report = report.at(*of, "closed");
     }
@@ -209,18 +223,19 @@ fn closed_among(given: &[Origin], (closed, open): (&[Origin], &[Origin]), role: 
     }
 }
 
-fn meet(fault: &LoopFault, say: &dyn Say) -> Report {
-    let LoopFault::Meet { a, b, outer, trimming, places, run, apart, tolerance } = fault else {
-        return Report::new("E661", "two loops meet");
-    };
-    let code = if *outer { "E612" } else { "E661" };
-    let (first, second) = (say.quoted(*a, "one hole"), say.quoted(*b, if *outer { "the surface" } else { "another one" }));
-    let whom = if *outer { format!("the hole {first} and the outer loop {second}") } else { format!("the holes {first} and {second}") };
-    // Curves that were carried to a surface are up to a quarter of the tolerance off.
-    let close = *apart > 0.5 * tolerance;
+/// Two loops that meet at places or along a run.
+fn meet(
+    (a, b): (Origin, Origin),
+    outer: bool,
+    trimming: Origin,
+    (places, run): (&[DVec3], Option<(DVec3, DVec3)>),
+    say: &dyn Say,
+) -> Report {
+    let (first, second) = (say.quoted(a, "one hole"), say.quoted(b, if outer { "the surface" } else { "another one" }));
+    let whom = if outer { format!("the hole {first} and the outer loop {second}") } else { format!("the holes {first} and {second}") };
     let message = match run {
         Some((from, to)) => {
-            let (from, to) = say.pair(*from, *to);
+            let (from, to) = say.pair(from, to);
             format!("{whom} run along each other from {from} to {to}")
         }
         None => {
@@ -230,20 +245,16 @@ fn meet(fault: &LoopFault, say: &dyn Say) -> Report {
             format!("{whom} meet at {}{more}", list.join(" and "))
         }
     };
-    let report = Report::new(code, message)
-        .at(*a, "this hole")
-        .at(*b, if *outer { "the outer loop" } else { "meets this one" })
-        .at(*trimming, "trimmed here");
-    let report = if close {
-        report.note(format!("they are {} apart there; the model's tolerance is {}", say.length(*apart), say.length(*tolerance)))
-    } else {
-        report
-    };
-    report.help(if *outer {
+    let report = Report::new(message).at(a, "this hole").at(b, if outer { "the outer loop" } else { "meets this one" });
+    report.at(trimming, "trimmed here").help(if outer {
         "a hole lies wholly inside; where it cuts the border, make one outer loop of both"
     } else {
         "move them apart, or make one hole of both"
     })
+}
+
+fn apart_there(apart: f64, tolerance: f64, say: &dyn Say) -> String {
+    format!("they are {} apart there; the model's tolerance is {}", say.length(apart), say.length(tolerance))
 }
 
 /// Places of a meeting, and curves of a loop, that are listed.
@@ -252,20 +263,20 @@ const SHOWN: usize = 4;
 fn repeated(a: (Origin, usize), b: (Origin, Option<usize>), trimming: Origin, say: &dyn Say) -> Report {
     let (first, second) = (say.quoted(a.0, "one hole"), say.quoted(b.0, "another one"));
     let Some(earlier) = b.1 else {
-        return Report::new("E612", format!("the hole {first} runs along the whole outer loop {second}: nothing would be left"))
+        return Report::new(format!("the hole {first} runs along the whole outer loop {second}: nothing would be left"))
             .at(a.0, "this hole")
             .at(b.0, "the outer loop")
             .at(trimming, "trimmed here")
             .help("a hole lies wholly inside");
     };
     if a.0 == b.0 {
-        return Report::new("E661", format!("the hole {first} is given twice"))
+        return Report::new(format!("the hole {first} is given twice"))
             .label(Subject::Item("holes", earlier), "here")
             .label(Subject::Item("holes", a.1), "and here again")
             .at(a.0, "this hole")
             .help("give each hole once");
     }
-    Report::new("E661", format!("the holes {first} and {second} are the same loop"))
+    Report::new(format!("the holes {first} and {second} are the same loop"))
         .at(a.0, "this hole")
         .at(b.0, "is this one again")
         .at(trimming, "trimmed here")

@@ -1,19 +1,29 @@
 //! What can go wrong with surfaces, family by family.
 
 pub mod blends;
+pub mod borders;
+pub mod crossing;
 pub mod cut;
+pub mod deviation;
 pub mod join;
 pub mod loops;
+pub mod profiles;
 pub mod scatter;
+pub mod sections;
 pub mod surface;
 pub mod sweep;
 pub mod walls;
 
-pub use crate::surface::faults::blends::{BlendFault, NoBlend};
-pub use crate::surface::faults::cut::CutFault;
-pub use crate::surface::faults::join::JoinFault;
-pub use crate::surface::faults::loops::{LoopFault, LoopRole};
-pub use crate::surface::faults::scatter::ScatterFault;
-pub use crate::surface::faults::surface::{Construction, SurfaceFault};
-pub use crate::surface::faults::sweep::SweepFault;
-pub use crate::surface::faults::walls::{WallEdge, WallFault};
+pub use blends::{BlendFault, NoBlend};
+pub use borders::BorderFault;
+pub use crossing::CrossingFault;
+pub use cut::CutFault;
+pub use deviation::DeviationFault;
+pub use join::JoinFault;
+pub use loops::{LoopFault, LoopRole};
+pub use profiles::ProfileFault;
+pub use scatter::ScatterFault;
+pub use sections::SectionFault;
+pub use surface::{Construction, SurfaceFault};
+pub use sweep::SweepFault;
+pub use walls::{WallEdge, WallFault};

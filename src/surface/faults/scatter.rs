@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{Describe, Report, Say, Subject};
+use crate::base::fault::{Describe, Report, Say, Subject, codes};
 use crate::base::origin::Origin;
 
 /// What can go wrong with scattered points, or deserves a word. Lengths and points are in model units.
@@ -66,6 +66,8 @@ pub enum ScatterFault {
 }
 
 impl Describe for ScatterFault {
+    codes! { Merged "W225", OneLine "E665", Over "E675", Steep "W668", StandsOut "W226" }
+
     fn describe(&self, say: &dyn Say) -> Report {
         let label = |report: Report, text: &str| report.label(Subject::Argument("points"), text);
         match self {
@@ -77,14 +79,14 @@ impl Describe for ScatterFault {
                     say.length(*tolerance),
                     say.point(*at)
                 );
-                label(Report::new("W225", message), "some are given twice")
+                label(Report::new(message), "some are given twice")
             }
             Self::OneLine { surface, count, from, to } => {
                 let ((a, b), which) = (say.pair(*from, *to), say.quoted(*surface, "this surface"));
                 let message = format!(
                     "the {count} points of {which} span no surface: projected along its direction, all lie on the line from {a} to {b}"
                 );
-                label(Report::new("E665", message), "all on one line").help("add points beside that line, or choose another `along:`")
+                label(Report::new(message), "all on one line").help("add points beside that line, or choose another `along:`")
             }
             Self::Over { surface, a, b, tolerance } => {
                 let ((a, b), which) = (say.pair(*a, *b), say.quoted(*surface, "this surface"));
@@ -92,20 +94,20 @@ impl Describe for ScatterFault {
                     "two points of {which} lie above one another: {a} and {b} have the same place in its plane, within {}",
                     say.length(*tolerance)
                 );
-                label(Report::new("E675", message), "a place has one height")
+                label(Report::new(message), "a place has one height")
                     .help("choose `along:` so that no place has two points, or divide a closed cloud into parts for which that is possible")
             }
             Self::Steep { surface, a, b, steep } => {
                 let ((a, b), which) = (say.pair(*a, *b), say.quoted(*surface, "this surface"));
-                let message = format!("{which} rises {steep:.0} times as far as it runs from {a} to {b}");
-                label(Report::new("W668", message), "very steep")
+                let message = format!("{which} has a slope of {steep:.0} from {a} to {b}");
+                label(Report::new(message), "very steep")
                     .help("points of two sheets are not one surface over a plane: leave one sheet out, or choose another `along:`")
             }
             Self::StandsOut { surface, at, off, range } => {
                 let which = say.quoted(*surface, "this surface");
                 let (off, at, range) = (say.length(*off), say.point(*at), say.length(*range));
                 let message = format!("{which} overshoots the heights of its points by {off} at {at}; the heights span {range}");
-                label(Report::new("W226", message), "neighbours with very different heights")
+                label(Report::new(message), "neighbours with very different heights")
                     .help("leave out points that are close together at different heights, or add points where the surface overshoots")
             }
         }

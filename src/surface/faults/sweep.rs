@@ -1,49 +1,14 @@
-//! Family 6: sweeps of sections along guides.
+//! Guides and paths along which sections are carried.
 
 use glam::DVec3;
 
-use crate::base::fault::{Describe, Report, Say};
+use crate::base::fault::{Describe, Report, Say, codes};
 use crate::base::origin::Origin;
-use crate::base::text::{decimals, real};
+use crate::base::text::decimals;
 
-/// What can go wrong when sections travel along guides, or deserves a word. Lengths are model units.
+/// What can go wrong with a guide or path, or deserves a word. Lengths are model units.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SweepFault {
-    /// E631: under the parallel law a section does not lie in a plane parallel to the others.
-    SectionsNotParallel {
-        /// The section whose plane the others are held to.
-        a: Origin,
-        /// The one that leaves its own.
-        b: Origin,
-        /// By which angle, radians.
-        angle: f64,
-        /// By how much at most.
-        off: f64,
-        /// Where.
-        at: DVec3,
-    },
-    /// E632: under the rotational law a section does not lie in a half-plane of the axis.
-    AxisOffSection {
-        /// The section.
-        section: Origin,
-        /// How far its point is off.
-        off: f64,
-        /// That point.
-        at: DVec3,
-    },
-    /// E633: under the normal law a section is not normal to the main guide.
-    SectionNotNormal {
-        /// The section.
-        section: Origin,
-        /// The main guide.
-        guide: Origin,
-        /// By which angle, radians.
-        angle: f64,
-        /// How far off the normal plane.
-        off: f64,
-        /// Where.
-        at: DVec3,
-    },
     /// E634: a guide does not reach the plane of a station.
     GuideMissesStation {
         /// The guide.
@@ -88,26 +53,6 @@ pub enum SweepFault {
         /// The new end.
         end: DVec3,
     },
-    /// E640: a section does not touch a guide.
-    DifferentGuides {
-        /// The section.
-        section: Origin,
-        /// The guide.
-        guide: Origin,
-        /// Their distance.
-        gap: f64,
-        /// Where, on the section.
-        at: DVec3,
-    },
-    /// W644: a section was scaled by much to touch its guides.
-    SectionScaled {
-        /// The section.
-        section: Origin,
-        /// The factor.
-        scale: f64,
-        /// The station.
-        at: DVec3,
-    },
     /// E636: a guide or a path turns back on itself, or has no direction.
     GuideCusp {
         /// The guide.
@@ -144,78 +89,50 @@ pub enum SweepFault {
 }
 
 impl Describe for SweepFault {
+    codes! {
+        GuideMissesStation "E634", GuideDoublesBack "E635", MainGuideOnAxis "E637", GuideExtended "N638", GuideCusp "E636",
+        BentRun "E306", SelfIntersects "W639"
+    }
+
     fn describe(&self, say: &dyn Say) -> Report {
-        use SweepFault as F;
         match self {
-            F::SectionsNotParallel { .. } | F::AxisOffSection { .. } | F::SectionNotNormal { .. } => describe_section(self, say),
-            F::GuideMissesStation { guide, law, station, at, miss, nearest } => Report::new(
-                "E634",
-                format!(
-                    "{} does not reach the station at {}% of the main guide, {}: under the {law} law it stays {} off, nearest at {}",
-                    say.quoted(*guide, "a guide"),
-                    decimals(100.0 * station, 1),
-                    say.point(*at),
-                    say.length(*miss),
-                    say.point(*nearest)
-                ),
-            )
+            Self::GuideMissesStation { guide, law, station, at, miss, nearest } => Report::new(format!(
+                "{} does not reach the station at {}% of the main guide, {}: under the {law} law its nearest point, {}, is {} away",
+                say.quoted(*guide, "a guide"),
+                decimals(100.0 * station, 1),
+                say.point(*at),
+                say.point(*nearest),
+                say.length(*miss)
+            ))
             .at(*guide, "too short, even extended by a quarter at each end")
             .help("draw this guide as far as the main guide goes, or cut the main guide: `c[A..B]`"),
-            F::GuideDoublesBack { guide, law, at } => Report::new(
-                "E635",
-                format!(
-                    "{} runs back at {}: under the {law} law a section would pass there twice",
-                    say.quoted(*guide, "a guide"),
-                    say.point(*at)
-                ),
-            )
+            Self::GuideDoublesBack { guide, law, at } => Report::new(format!(
+                "{} doubles back at {}: under the {law} law a section would pass there twice",
+                say.quoted(*guide, "a guide"),
+                say.point(*at)
+            ))
             .at(*guide, "turns back here")
             .help("take the run of it that goes one way, `c[A..B]`, or another `law:`"),
-            F::MainGuideOnAxis { guide, at, off } => Report::new(
-                "E637",
-                format!(
-                    "{} is {} from the axis at {}: no half-plane goes through it there",
-                    say.quoted(*guide, "the main guide"),
-                    say.length(*off),
-                    say.point(*at)
-                ),
-            )
+            Self::MainGuideOnAxis { guide, at, off } => Report::new(format!(
+                "{} is {} from the axis at {}: no half-plane through it is defined there",
+                say.quoted(*guide, "the main guide"),
+                say.length(*off),
+                say.point(*at)
+            ))
             .at(*guide, "meets the axis")
             .help("list another guide first, one that does not meet the axis"),
-            F::GuideExtended { guide, length, share, end } => Report::new(
-                "N638",
-                format!(
-                    "{} was extended by {} ({}% of its length), to {}, so that it reaches every station",
-                    say.quoted(*guide, "a guide"),
-                    say.length(*length),
-                    decimals(100.0 * share, 1),
-                    say.point(*end)
-                ),
-            )
+            Self::GuideExtended { guide, length, share, end } => Report::new(format!(
+                "{} was extended by {} ({}% of its length), to {}, so that it reaches every station",
+                say.quoted(*guide, "a guide"),
+                say.length(*length),
+                decimals(100.0 * share, 1),
+                say.point(*end)
+            ))
             .at(*guide, "extrapolated at its end"),
-            F::DifferentGuides { section, guide, gap, at } => Report::new(
-                "E640",
-                format!(
-                    "{} does not touch {}: they are {} apart at {}",
-                    say.quoted(*section, "a section"),
-                    say.quoted(*guide, "a guide"),
-                    say.length(*gap),
-                    say.point(*at)
-                ),
-            )
-            .at(*section, "must touch every guide")
-            .at(*guide, "is not touched")
-            .help("draw one of them through a point of the other, or leave this guide out of `guides:`"),
-            F::SectionScaled { section, scale, at } => Report::new(
-                "W644",
-                format!("{} is scaled by {} to touch its guides at {}", say.quoted(*section, "a section"), few(*scale), say.point(*at)),
-            )
-            .at(*section, "the nearest section to that station")
-            .help("add a section there"),
-            F::GuideCusp { guide, at, fraction, still } => {
+            Self::GuideCusp { guide, at, fraction, still } => {
                 let what = if *still { "has unbounded curvature" } else { "turns back on itself" };
                 let (which, share) = (say.quoted(*guide, "the path"), decimals(100.0 * fraction, 1));
-                Report::new("E636", format!("{which} {what} at {}, {share}% of its length", say.point(*at)))
+                Report::new(format!("{which} {what} at {}, {share}% of its length", say.point(*at)))
                     .at(
                         *guide,
                         if *still { "no section can follow it there" } else { "has no direction there that a section could follow" },
@@ -226,93 +143,29 @@ impl Describe for SweepFault {
                         "take the runs before and after it, `c[0..P]` and `c[P..1]`, or replace the cusp by a bend"
                     })
             }
-            F::BentRun { path, at, fraction } => Report::new(
-                "E306",
-                format!(
-                    "{} is curved beside its corner at {}, {}% of its length: a mitre needs straight runs there",
-                    say.quoted(*path, "the path"),
-                    say.point(*at),
-                    decimals(100.0 * fraction, 1)
-                ),
-            )
+            Self::BentRun { path, at, fraction } => Report::new(format!(
+                "{} is curved beside its corner at {}, {}% of its length: a mitre needs straight runs there",
+                say.quoted(*path, "the path"),
+                say.point(*at),
+                decimals(100.0 * fraction, 1)
+            ))
             .at(*path, "runs beside a mitred corner must be straight")
             .help("`corner: round` turns the profile about the corner"),
-            F::SelfIntersects { surface, path, at, reach, radius } => {
+            Self::SelfIntersects { surface, path, at, reach, radius } => {
                 let why = match radius {
                     Some(radius) => {
-                        format!("it reaches {} from a path that bends with a radius of {} there", say.length(*reach), say.length(*radius))
+                        format!(
+                            "the section extends {} from a path whose radius of curvature there is {}",
+                            say.length(*reach),
+                            say.length(*radius)
+                        )
                     }
-                    None => format!("the path between its corners is too short for a section that reaches {} from it", say.length(*reach)),
+                    None => format!("the path between its corners is too short for a section that extends {} from it", say.length(*reach)),
                 };
-                Report::new("W639", format!("{} crosses itself at {}: {why}", say.quoted(*surface, "this sweep"), say.point(*at)))
+                Report::new(format!("{} crosses itself at {}: {why}", say.quoted(*surface, "this sweep"), say.point(*at)))
                     .at(*path, "bends too sharply for this section")
                     .help("draw the path with wider bends, or a smaller section")
             }
         }
-    }
-}
-
-/// A factor with three digits that count.
-fn few(x: f64) -> String {
-    real(format!("{x:.2e}").parse().unwrap_or(x))
-}
-
-/// E631–E633: what a law asks of sections.
-fn describe_section(fault: &SweepFault, say: &dyn Say) -> Report {
-    use SweepFault as F;
-    match fault {
-        F::SectionsNotParallel { a, b, angle, off, at } if a == b => Report::new(
-            "E631",
-            format!(
-                "{} is not flat: at {} it is {} ({}) off its plane",
-                say.quoted(*a, "a section"),
-                say.point(*at),
-                say.length(*off),
-                say.angle(*angle)
-            ),
-        )
-        .at(*a, "leaves its plane")
-        .help("`law: synchronized` takes sections that are not flat"),
-        F::SectionsNotParallel { a, b, angle, off, at } => Report::new(
-            "E631",
-            format!(
-                "{} and {} are not parallel: the second is {} off, {} at {}",
-                say.quoted(*a, "a section"),
-                say.quoted(*b, "another one"),
-                say.angle(*angle),
-                say.length(*off),
-                say.point(*at)
-            ),
-        )
-        .at(*b, "not parallel")
-        .at(*a, "to this section")
-        .help("draw both in parallel planes, or take `law: rotational` or `law: synchronized`"),
-        F::AxisOffSection { section, off, at } => Report::new(
-            "E632",
-            format!(
-                "{} does not lie in a half-plane of the axis: it is {} off at {}",
-                say.quoted(*section, "a section"),
-                say.length(*off),
-                say.point(*at)
-            ),
-        )
-        .at(*section, "its plane misses the axis, or it crosses the axis")
-        .help("draw the section in a plane through `axis:`, on one side of it"),
-        F::SectionNotNormal { section, guide, angle, off, at } => Report::new(
-            "E633",
-            format!(
-                "{} is not normal to {}: {} off, {} at {}",
-                say.quoted(*section, "a section"),
-                say.quoted(*guide, "the main guide"),
-                say.angle(*angle),
-                say.length(*off),
-                say.point(*at)
-            ),
-        )
-        .at(*section, "must stand at right angles")
-        .at(*guide, "to this guide")
-        .help("turn the section about the point where it touches the guide, or take another `law:`"),
-        // Answered by the table above.
-        _ => Report::new("E999", "a fault that another table has words for"),
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{Describe, Report, Say};
+use crate::base::fault::{Describe, Report, Say, codes};
 use crate::base::origin::Origin;
 
 /// Why the walls of two faces do not meet at their edge. Lengths in model units.
@@ -81,59 +81,59 @@ pub enum WallFault {
 }
 
 impl Describe for WallFault {
+    codes! { Creased "E670", Tip "E670", Pieces "E670", Edge "E671" }
+
     fn describe(&self, say: &dyn Say) -> Report {
         match self {
-            Self::Creased { offset, surface, at, angle } => Report::new(
-                "E670",
-                format!("{} has a crease of {} at {}", say.quoted(*surface, "the surface"), say.angle(*angle), say.point(*at)),
-            )
-            .at(*surface, "its normals jump there")
-            .at(*offset, "is not unique at the crease")
-            .help("build two surfaces that meet at the crease, each from the parts of the curves on its side, and offset each"),
+            Self::Creased { offset, surface, at, angle } => {
+                Report::new(format!("{} has a crease of {} at {}", say.quoted(*surface, "the surface"), say.angle(*angle), say.point(*at)))
+                    .at(*surface, "its normals jump there")
+                    .at(*offset, "is not unique at the crease")
+                    .help("build two surfaces that meet at the crease, each from the parts of the curves on its side, and offset each")
+            }
             Self::Tip { offset, surface, at } => {
-                Report::new("E670", format!("{} has a tip at {}", say.quoted(*surface, "the surface"), say.point(*at)))
+                Report::new(format!("{} has a tip at {}", say.quoted(*surface, "the surface"), say.point(*at)))
                     .at(*surface, "its normals have no common limit there")
                     .at(*offset, "is not unique at the tip")
                     .help("cut the tip off first, `trim(s, by: …, keep: …)`")
             }
             Self::Pieces { offset, surface } => {
                 let name = say.quoted(*surface, "the surface");
-                Report::new("E670", format!("{name} is made of triangles, and its curvature jumps between them: its offset has no net"))
+                Report::new(format!("{name} is made of triangles, and its curvature jumps between them: its offset has no net"))
                     .at(*surface, "made of triangles")
                     .at(*offset, "has no smooth offset")
                     .help("build a net first: `grid` through rows of its points")
             }
-            Self::Edge { wall, a, b, at, why } => {
-                edge((*a, *b), *at, *why, say).at(*a, "this face").at(*b, "and this one").at(*wall, "asked for here")
-            }
+            Self::Edge { wall, a, b, at, why } => edge((*a, *b), *at, *why, say).both(*a, *b, "this face").at(*wall, "asked for here"),
         }
     }
 }
 
 fn edge((a, b): (Origin, Origin), at: DVec3, why: WallEdge, say: &dyn Say) -> Report {
     let (x, y, place) = (say.quoted(a, "one face"), say.quoted(b, "another"), say.point(at));
-    let report = |message: String| Report::new("E671", message);
     match why {
         WallEdge::Gap { apart } => {
-            report(format!("borders of {x} and {y} are {} apart at {place}: walls join where faces share an edge", say.length(apart)))
+            Report::new(format!("borders of {x} and {y} are {} apart at {place}: walls join where faces share an edge", say.length(apart)))
                 .help("build both on the same curve, or set a larger `tolerance`")
         }
-        WallEdge::Loose => report(format!("{x} and {y} are not connected: the side of the wall on {y} is not determined, at {place}"))
+        WallEdge::Loose => Report::new(format!("{x} and {y} are not connected: the side of the wall on {y} is not determined, at {place}"))
             .help("make a shell of each connected piece, or set `side: both`"),
-        WallEdge::Three => report(format!("{x} and {y} share the edge at {place} with a third face: which walls meet there is ambiguous"))
-            .help("thicken the faces on one side of the edge first, then the others"),
-        WallEdge::Part => report(format!("{x} and {y} share a part of a border at {place}, not a whole edge"))
+        WallEdge::Three => {
+            Report::new(format!("{x} and {y} share the edge at {place} with a third face: which walls meet there is ambiguous"))
+                .help("thicken the faces on one side of the edge first, then the others")
+        }
+        WallEdge::Part => Report::new(format!("{x} and {y} share a part of a border at {place}, not a whole edge"))
             .help("divide the longer border where the shorter one ends, `split(s, by: …)`"),
-        WallEdge::Mixed => report(format!("the edge of {x} and {y} is sharp at some places and smooth at others, as at {place}"))
+        WallEdge::Mixed => Report::new(format!("the edge of {x} and {y} is sharp at some places and smooth at others, as at {place}"))
             .help("divide both faces there, `split(s, by: …)`"),
         WallEdge::Apart { distance } => {
-            report(format!("the offsets of {x} and {y} by {} do not meet near their edge at {place}", say.length(distance.abs())))
+            Report::new(format!("the offsets of {x} and {y} by {} do not meet near their edge at {place}", say.length(distance.abs())))
                 .help("a thinner wall, or faces at an angle farther from 180°")
         }
-        WallEdge::Corner => report(format!("the walls at the corner {place} of {x} and {y} do not meet in one point"))
+        WallEdge::Corner => Report::new(format!("the walls at the corner {place} of {x} and {y} do not meet in one point"))
             .help("let borders cross edges at right angles, and no more than three faces meet in a corner"),
         WallEdge::Gone { distance } => {
-            report(format!("nothing is left of the offset of {x} near {place} at a distance of {}", say.length(distance.abs())))
+            Report::new(format!("nothing is left of the offset of {x} near {place} at a distance of {}", say.length(distance.abs())))
                 .help("a thinner wall, or one on the other side, `side:`")
         }
     }

@@ -8,7 +8,7 @@ use crate::base::origin::Origin;
 use crate::base::tolerance::{ROUNDING_SHARE, Tolerance};
 use crate::geometry::Curve;
 use crate::geometry::data::fault::CurveFault;
-use crate::network::fault::NetworkFault;
+use crate::network::fault::MeetingFault;
 use crate::network::snap::may_snap;
 use crate::network::{Chain, meet as meet_chains};
 use crate::surface::closest::nearest::{Nearest, closest};
@@ -191,7 +191,7 @@ pub fn with_curve_once(chain: &Chain, surfaces: &[Surface], tolerance: &Toleranc
     let runs: Vec<(DVec3, DVec3)> = meetings.iter().filter_map(|m| m.shared_to.map(|to| (m.point, chain.point(to)))).collect();
     let (a, b) = (chain.origin(), surfaces.first().map_or(Origin::NONE, Surface::origin));
     if !runs.is_empty() {
-        return Err(NetworkFault::SharesRun { a, b, runs }.into());
+        return Err(MeetingFault::SharesRun { a, b, runs }.into());
     }
     match meetings.as_slice() {
         [one] => Ok(*one),
@@ -200,11 +200,11 @@ pub fn with_curve_once(chain: &Chain, surfaces: &[Surface], tolerance: &Toleranc
             let nearest = pairs.min_by(|x, y| x.0.0.distance(x.0.1).total_cmp(&y.0.0.distance(y.0.1)));
             let ((pa, pb), b) = nearest.unwrap_or(((chain.start(), chain.start()), b));
             let near = may_snap(pa.distance(pb), chain.length());
-            Err(NetworkFault::NoMeeting { a: (a, pa), b: (b, pb), near, tolerance: tolerance.point }.into())
+            Err(MeetingFault::NoMeeting { a: (a, pa), b: (b, pb), near, tolerance: tolerance.point }.into())
         }
         several => {
             let candidates = several.iter().map(|m| (m.point, m.f)).collect();
-            Err(NetworkFault::SeveralMeetings { a, b, candidates }.into())
+            Err(MeetingFault::SeveralMeetings { a, b, candidates }.into())
         }
     }
 }

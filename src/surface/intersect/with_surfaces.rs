@@ -16,7 +16,7 @@ use crate::geometry::{Curve, Kind, Nurbs};
 use crate::network::Chain;
 use crate::surface::core::surface::Surface;
 use crate::surface::data::kind::Domain;
-use crate::surface::faults::CutFault;
+use crate::surface::faults::CrossingFault;
 use crate::surface::intersect::coplanar::{Coplanar, overlap};
 use crate::surface::intersect::join_curves::{self, STRAIGHT};
 use crate::surface::intersect::pair::Pair;
@@ -65,10 +65,10 @@ pub fn with_surfaces_once(a: &[Surface], b: &[Surface], origin: Origin, toleranc
     let (a, b) = (of(a), of(b));
     match common.curves.as_slice() {
         [one] => Ok(one.clone()),
-        [] => Err(CutFault::NoCurve { a, b, touch: common.touches.first().copied(), tolerance: tolerance.point }.into()),
+        [] => Err(CrossingFault::NoCurve { a, b, touch: common.touches.first().copied(), tolerance: tolerance.point }.into()),
         several => {
             let curves = several.iter().map(|c| (c.point(0.5), c.length())).collect();
-            Err(CutFault::SeveralCurves { a, b, curves }.into())
+            Err(CrossingFault::SeveralCurves { a, b, curves }.into())
         }
     }
 }
@@ -85,7 +85,7 @@ fn of_two(a: &Surface, b: &Surface, origin: Origin, tolerance: &Tolerance) -> Re
         (Some(x), Some(y)) => (x, y),
         (Some(x), None) => (x, x),
         (None, Some(y)) => (y, y),
-        (None, None) => return Err(CutFault::WithoutEnd { of: origin }.into()),
+        (None, None) => return Err(CrossingFault::WithoutEnd { of: origin }.into()),
     };
     if !box_a.touches(&box_b, tolerance.point) {
         return Ok((Vec::new(), Vec::new()));
@@ -93,7 +93,7 @@ fn of_two(a: &Surface, b: &Surface, origin: Origin, tolerance: &Tolerance) -> Re
     let (mut sheets_a, mut sheets_b) = (sheets(&widely_grounded(a, box_b)), sheets(&widely_grounded(b, box_a)));
     let lost =
         |at: DVec3| Fault::from(CurveFault::NotConverged { of: origin, what: "the curve in which the surfaces meet".to_owned(), at });
-    let along = |at: DVec3| Fault::from(CutFault::RunAlong { a: a.origin(), b: b.origin(), at, tolerance: tolerance.point });
+    let along = |at: DVec3| Fault::from(CrossingFault::RunAlong { a: a.origin(), b: b.origin(), at, tolerance: tolerance.point });
     let (mut curves, mut touches, mut coplanar) = (Vec::new(), Vec::new(), None);
     for x in &mut sheets_a {
         for y in &mut sheets_b {

@@ -17,7 +17,7 @@ use crate::surface::closest::foot::foot;
 use crate::surface::closest::nearest::closest;
 use crate::surface::core::surface::Surface;
 use crate::surface::data::kind::{Domain, SurfaceKind};
-use crate::surface::faults::SurfaceFault;
+use crate::surface::faults::BorderFault;
 use crate::surface::offset::boundary::{Boundary, boundaries, whole};
 use crate::surface::offset::exact::{folds, level, rough, swept};
 use crate::surface::rails::side::{Border, Side};
@@ -89,7 +89,7 @@ impl Carrier<'_> {
             };
             let pcurve = Pcurve::follow(self.ground, (chain, 0.0, 1.0), self.place(first), self.tolerance.point).map_err(|off| {
                 let (of, surface) = (chain.origin(), self.ground.origin());
-                SurfaceFault::LoopOutsideSurface { of, surface, off: off.distance, at: off.at, tolerance: self.tolerance.point }
+                BorderFault::LoopOutsideSurface { of, surface, off: off.distance, at: off.at, tolerance: self.tolerance.point }
             })?;
             made.chains.push(chain.clone());
             made.courses.push(TrimCurve::Pcurve(Arc::new(pcurve.into_poles(self.ground, chain))));

@@ -1,15 +1,15 @@
 //! Curves that close, walked round in order.
 
-use crate::network::grid_fault::GridFault;
+use crate::network::fault::GridFault;
 use glam::DVec3;
 
 use crate::base::fault::{Fault, Result};
 use crate::base::tolerance::{BESIDE, Tolerance};
 use crate::geometry::{Curve, Hit, Kind, self_intersect};
-use crate::network::fault::{CurveEnd, NetworkFault};
+use crate::network::fault::{ChainFault, CurveEnd, EndFault};
 use crate::network::{Chain, meet};
 use crate::surface::data::breaks::chain_breaks;
-use crate::surface::faults::{LoopFault, LoopRole, SurfaceFault};
+use crate::surface::faults::{BorderFault, LoopFault, LoopRole};
 
 /// A chain of the boundary with `true` where the walk round it runs against the chain.
 pub(crate) type Step = (Chain, bool);
@@ -27,13 +27,13 @@ pub(crate) fn end((chain, against): &Step) -> DVec3 {
 pub(crate) fn walked(chains: &[Chain], role: LoopRole, tolerance: &Tolerance) -> Result<Vec<Step>> {
     let mut left: Vec<&Chain> = chains.iter().collect();
     if left.is_empty() {
-        return Err(GridFault::FlowUnknown { curves: Vec::new(), why: crate::network::no_flow::NoFlow::TooFewCurves { given: 0 } }.into());
+        return Err(GridFault::FlowUnknown { curves: Vec::new(), why: crate::network::fault::NoFlow::TooFewCurves { given: 0 } }.into());
     }
     once_each(chains, role, tolerance)?;
     let mut walk: Vec<Step> = vec![(left.remove(0).clone(), false)];
     let open = |from: &Step, to: CurveEnd| {
         let a = CurveEnd { of: from.0.origin(), last: !from.1, at: end(from) };
-        Fault::from(NetworkFault::BoundaryOpen { a, b: to, tolerance: tolerance.point })
+        Fault::from(EndFault::BoundaryOpen { a, b: to, tolerance: tolerance.point })
     };
     while !left.is_empty() {
         let last = &walk[walk.len() - 1];
@@ -106,8 +106,8 @@ pub(crate) fn simple(walk: &[Step], tolerance: &Tolerance) -> Result<()> {
     let crossing = |(a, b): (usize, usize), at: DVec3, along: (f64, f64), apart: f64| -> Fault {
         let (a, b) = (walk[a].0.origin(), walk[b].0.origin());
         match apart > BESIDE * tolerance.point {
-            true => NetworkFault::LoopThin { a, b, at, apart, tolerance: tolerance.point }.into(),
-            false => SurfaceFault::LoopSelfIntersects { a, b, at, along }.into(),
+            true => ChainFault::LoopThin { a, b, at, apart, tolerance: tolerance.point }.into(),
+            false => BorderFault::LoopSelfIntersects { a, b, at, along }.into(),
         }
     };
     for a in 0..n {

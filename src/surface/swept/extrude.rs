@@ -15,7 +15,7 @@ use crate::surface::core::surface::{Parts, Surface};
 use crate::surface::data::breaks::chain_breaks;
 use crate::surface::data::flow_words::phrase;
 use crate::surface::data::kind::{Domain, SurfaceKind};
-use crate::surface::faults::SurfaceFault;
+use crate::surface::faults::ProfileFault;
 use crate::surface::rails::rail::Rail;
 use crate::surface::rails::reparam::Map;
 use crate::surface::rails::side::Border;
@@ -105,7 +105,7 @@ pub(crate) fn sweeps_area(surface: &Surface, profile: &Chain, tolerance: &Tolera
         });
         if parallel {
             let (from, to) = (profile.point(w[0]), profile.point(w[1]));
-            return Err(SurfaceFault::SweepDegenerate { profile: profile.origin(), from, to }.into());
+            return Err(ProfileFault::SweepDegenerate { profile: profile.origin(), from, to }.into());
         }
     }
     Ok(())

@@ -7,7 +7,7 @@ use crate::base::math;
 use crate::base::tolerance::{PARALLEL, Tolerance};
 use crate::network::Chain;
 use crate::surface::data::breaks::chain_breaks;
-use crate::surface::faults::SweepFault;
+use crate::surface::faults::{SectionFault, SweepFault};
 use crate::surface::swept::legs::Legs;
 use crate::surface::swept::revolve::Axis;
 
@@ -231,9 +231,9 @@ pub fn check_section(section: &Chain, station: &Station, law: Law, others: (&Cha
     }
     let section = section.origin();
     Err(match law {
-        Law::Parallel => SweepFault::SectionsNotParallel { a: first.origin(), b: section, angle, off, at }.into(),
-        Law::Rotational(_) => SweepFault::AxisOffSection { section, off, at }.into(),
-        _ => SweepFault::SectionNotNormal { section, guide: main.origin(), angle, off, at }.into(),
+        Law::Parallel => SectionFault::NotParallel { a: first.origin(), b: section, angle, off, at }.into(),
+        Law::Rotational(_) => SectionFault::AxisOff { section, off, at }.into(),
+        _ => SectionFault::NotNormal { section, guide: main.origin(), angle, off, at }.into(),
     })
 }
 

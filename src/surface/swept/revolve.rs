@@ -17,7 +17,7 @@ use crate::surface::core::surface::{Parts, Surface};
 use crate::surface::data::breaks::chain_breaks;
 use crate::surface::data::flow_words::phrase;
 use crate::surface::data::kind::{Domain, SurfaceKind};
-use crate::surface::faults::SurfaceFault;
+use crate::surface::faults::ProfileFault;
 use crate::surface::rails::side::{Border, Side};
 use crate::surface::shapes::nurbs::NurbsSurface;
 use crate::surface::shapes::sweep::{Path, Sweep};
@@ -48,7 +48,7 @@ pub fn axis_of(chain: &Chain, tolerance: &Tolerance) -> Result<Axis> {
     }
     match direction {
         Some(direction) if off <= tolerance.point => Ok(Axis { about: start, direction }),
-        _ => Err(SurfaceFault::AxisNotStraight { axis: chain.origin(), off, at }.into()),
+        _ => Err(ProfileFault::AxisNotStraight { axis: chain.origin(), off, at }.into()),
     }
 }
 
@@ -135,12 +135,12 @@ fn clear_of_axis(profile: &Chain, axis: &Axis, tolerance: &Tolerance) -> Result<
         if let Some((end, _)) = hit.shared_to {
             let to = profile.point(end);
             if hit.point.distance(to) > tolerance.point {
-                return Err(SurfaceFault::GeneratrixOnAxis { profile: profile.origin(), from: hit.point, to }.into());
+                return Err(ProfileFault::GeneratrixOnAxis { profile: profile.origin(), from: hit.point, to }.into());
             }
         }
         let from_end = hit.fa.min(1.0 - hit.fa) * profile.length();
         if from_end > tolerance.point || closed {
-            return Err(Fault::from(SurfaceFault::GeneratrixCrossesAxis { profile: profile.origin(), at: hit.point, fraction: hit.fa }));
+            return Err(Fault::from(ProfileFault::GeneratrixCrossesAxis { profile: profile.origin(), at: hit.point, fraction: hit.fa }));
         }
     }
     Ok(())

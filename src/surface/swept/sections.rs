@@ -1,6 +1,6 @@
 //! Sections and guides put in order: where they touch, which way they run, where a closed one starts.
 
-use crate::network::grid_fault::GridFault;
+use crate::network::fault::GridFault;
 use glam::DVec3;
 
 use crate::base::fault::{Fault, Result, ValueFault};
@@ -10,7 +10,7 @@ use crate::geometry::{Curve, Kind};
 use crate::network::meet::{closest_points, meet};
 use crate::network::{Chain, Run};
 use crate::surface::data::breaks::chain_breaks;
-use crate::surface::faults::SweepFault;
+use crate::surface::faults::SectionFault;
 use crate::surface::swept::laws::{Law, Station, halved, samples};
 
 /// A guide is made longer by this share of its length at each end, at most.
@@ -200,7 +200,7 @@ fn snapped(f: f64, chain: &Chain, tolerance: &Tolerance) -> f64 {
 /// E640: a section that touches a guide nowhere.
 pub fn apart(section: &Chain, guide: &Guide) -> Fault {
     let (p, q) = closest_points(section, &guide.given);
-    SweepFault::DifferentGuides { section: section.origin(), guide: guide.given.origin(), gap: p.distance(q), at: p }.into()
+    SectionFault::MissesGuide { section: section.origin(), guide: guide.given.origin(), gap: p.distance(q), at: p }.into()
 }
 
 /// Turns sections so that all meet the guides in one order, and puts the guides in that order.

@@ -15,7 +15,7 @@ use crate::surface::core::surface::Surface;
 use crate::surface::data::flow_words::phrase;
 use crate::surface::data::kind::SurfaceKind;
 use crate::surface::data::one_sided::OneSided;
-use crate::surface::faults::{SurfaceFault, SweepFault};
+use crate::surface::faults::{BorderFault, SweepFault};
 use crate::surface::rails::rail::Rail;
 use crate::surface::rails::reparam::{Map, Reparam};
 use crate::surface::shapes::blend::Blend;
@@ -137,7 +137,7 @@ fn guide_rail(net: &SweepNet, j: usize, nodes: &[f64], notes: &mut Vec<Fault>, t
                 .push(SweepFault::GuideExtended { guide: of, length: more * whole, share: more / (guide.own.1 - guide.own.0), end }.into());
         } else if more < -near {
             let border = net.guides[0].given.origin();
-            notes.push(SurfaceFault::EndTrimmed { curve: of, border, end, length: -more * whole }.into());
+            notes.push(BorderFault::EndTrimmed { curve: of, border, end, length: -more * whole }.into());
         }
     }
     let all = from <= near && to >= 1.0 - near;

@@ -7,7 +7,7 @@ use crate::base::origin::Origin;
 use crate::base::tolerance::{NUDGE, Tolerance};
 use crate::base::{job, math};
 use crate::network::Chain;
-use crate::surface::faults::SweepFault;
+use crate::surface::faults::{SectionFault, SweepFault};
 use crate::surface::swept::deform::{self, Deformation, Pieces};
 use crate::surface::swept::laws::{Law, Main, Station, check_section, plane_normal, samples};
 use crate::surface::swept::marks::Marks;
@@ -358,7 +358,7 @@ fn ribs(
             let deformation = Deformation::new(&anchors, &targets, turn, tolerance);
             let scale = deformation.scale;
             if !(LEAST_SCALE..=1.0 / LEAST_SCALE).contains(&scale) {
-                let fault = SweepFault::SectionScaled { section: section.chain.origin(), scale, at: station.at };
+                let fault = SectionFault::Scaled { section: section.chain.origin(), scale, at: station.at };
                 made.notes.push(fault.into());
             }
             let deformation = if made.closed.1 { deformation.closing() } else { deformation };

@@ -14,7 +14,7 @@ use crate::network::Chain;
 use crate::surface::closest::nearest::closest;
 use crate::surface::core::surface::Surface;
 use crate::surface::data::kind::Domain;
-use crate::surface::faults::SurfaceFault;
+use crate::surface::faults::BorderFault;
 use crate::surface::rails::side::{Border, Side, between};
 use crate::surface::rails::trim_curve::{Pcurve, TrimCurve};
 use crate::surface::trims::pcurve::{Off, is_pole};
@@ -316,7 +316,7 @@ fn of_cutter(base: &Surface, strand: usize, run: Chain, start: DVec2, tolerance:
 
 fn outside(base: &Surface, run: &Chain, off: Off, tolerance: &Tolerance) -> Fault {
     let (of, at) = (run.origin(), off.at);
-    SurfaceFault::LoopOutsideSurface { of, surface: base.origin(), off: off.distance, at, tolerance: tolerance.point }.into()
+    BorderFault::LoopOutsideSurface { of, surface: base.origin(), off: off.distance, at, tolerance: tolerance.point }.into()
 }
 
 /// A pole, parted where cutters run into it; ends beside an end of it are put there.

@@ -11,7 +11,7 @@ use crate::surface::closest::nearest::closest;
 use crate::surface::core::plane;
 use crate::surface::core::surface::Surface;
 use crate::surface::data::kind::Domain;
-use crate::surface::faults::{LoopFault, LoopRole, SurfaceFault};
+use crate::surface::faults::{BorderFault, LoopFault, LoopRole};
 use crate::surface::rails::boundary;
 use crate::surface::rails::trim_curve::TrimCurve;
 use crate::surface::trims::loops::{Ring, crossing, nested, touches};
@@ -70,7 +70,7 @@ pub fn with_loops(surface: &Surface, tolerance: &Tolerance) -> Result<Surface> {
 fn goes_round(base: &Surface, chains: &[Chain], trimming: Origin) -> Fault {
     let of = chains.first().map_or(trimming, Chain::origin);
     let at = chains.first().map_or(DVec3::ZERO, Chain::start);
-    SurfaceFault::LoopGoesRound { of, surface: base.origin(), trimming, at }.into()
+    BorderFault::LoopGoesRound { of, surface: base.origin(), trimming, at }.into()
 }
 
 /// Holes that are cut into a surface.
@@ -197,7 +197,7 @@ fn kept_holes(base: &Surface, (ring, walk): (&Ring, &TrimLoop), origin: Origin, 
     for (chain, p) in middles(&ring.chains, cuts) {
         if !face.keeps_point(p, foot(p), 2.0 * tolerance.point) {
             let (of, off) = (chain.origin(), closest(&face, p).distance);
-            return Err(SurfaceFault::LoopOutsideSurface { of, surface: base.origin(), off, at: p, tolerance: tolerance.point }.into());
+            return Err(BorderFault::LoopOutsideSurface { of, surface: base.origin(), off, at: p, tolerance: tolerance.point }.into());
         }
     }
     let mut kept = Vec::new();

@@ -18,7 +18,7 @@ use crate::surface::closest::nearest::Nearest;
 use crate::surface::core::plane;
 use crate::surface::core::surface::Surface;
 use crate::surface::data::kind::Domain;
-use crate::surface::faults::SurfaceFault;
+use crate::surface::faults::BorderFault;
 use crate::surface::rails::side::Side;
 use crate::surface::rails::trim_curve::TrimCurve;
 use crate::surface::trims::cells::Cells;
@@ -272,10 +272,10 @@ impl Sides<'_> {
         self.borders.iter().filter(touched).filter_map(beside).collect()
     }
 
-    fn nothing(&self, trimming: Origin) -> SurfaceFault {
+    fn nothing(&self, trimming: Origin) -> BorderFault {
         let of = self.borders.first().map_or(trimming, Chain::origin);
         let at = self.borders.first().map_or(DVec3::ZERO, Chain::start);
-        SurfaceFault::LoopGoesRound { of, surface: self.base.origin(), trimming, at }
+        BorderFault::LoopGoesRound { of, surface: self.base.origin(), trimming, at }
     }
 }
 

@@ -19,7 +19,7 @@ use crate::surface::core::surface::Surface;
 use crate::surface::data::breaks::chain_breaks;
 use crate::surface::data::jet::Jet2;
 use crate::surface::data::kind::Domain;
-use crate::surface::faults::SurfaceFault;
+use crate::surface::faults::BorderFault;
 use crate::surface::trims::compose;
 
 /// Share of the tolerance that a cubic may be off.
@@ -110,7 +110,7 @@ struct Carrier<'a> {
 /// has a cusp.
 pub fn carried(surface: &Surface, chain: &Chain, way: Way, origin: Origin, tolerance: &Tolerance) -> Result<Curve> {
     let carrier = Carrier { surface, near: Nearest::new(surface), chain, way };
-    let off = |at: DVec3, distance: f64| SurfaceFault::LoopOutsideSurface {
+    let off = |at: DVec3, distance: f64| BorderFault::LoopOutsideSurface {
         of: chain.origin(),
         surface: surface.origin(),
         off: distance,
@@ -118,7 +118,7 @@ pub fn carried(surface: &Surface, chain: &Chain, way: Way, origin: Origin, toler
         tolerance: tolerance.point,
     };
     let missed = |f: f64| match (way, chain.point(f)) {
-        (Way::Parameters, p) => SurfaceFault::LoopOutsideParameters { of: chain.origin(), surface: surface.origin(), uv: (p.x, p.y) },
+        (Way::Parameters, p) => BorderFault::LoopOutsideParameters { of: chain.origin(), surface: surface.origin(), uv: (p.x, p.y) },
         (_, p) => off(p, carrier.near.at(p).distance),
     };
     let stops = [vec![0.0], chain_breaks(chain), vec![1.0]].concat();

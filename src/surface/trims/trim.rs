@@ -12,7 +12,7 @@ use crate::surface::closest::nearest::closest;
 use crate::surface::core::surface::{Parts, Surface};
 use crate::surface::core::trim::{Trim, reach};
 use crate::surface::data::kind::{Domain, SurfaceKind};
-use crate::surface::faults::{LoopRole, SurfaceFault};
+use crate::surface::faults::{BorderFault, LoopRole};
 use crate::surface::rails::boundary;
 use crate::surface::rails::side::{Border, Side};
 use crate::surface::rails::trim_curve::{Pcurve, TrimCurve};
@@ -141,7 +141,7 @@ fn followed(base: &Surface, steps: &[boundary::Step], tolerance: &Tolerance) -> 
         let (from, to) = if *against { (1.0, 0.0) } else { (0.0, 1.0) };
         let pcurve = Pcurve::follow(base, (chain, from, to), place, tolerance.point).map_err(|off| {
             let (of, at) = (chain.origin(), off.at);
-            Fault::from(SurfaceFault::LoopOutsideSurface { of, surface: base.origin(), off: off.distance, at, tolerance: tolerance.point })
+            Fault::from(BorderFault::LoopOutsideSurface { of, surface: base.origin(), off: off.distance, at, tolerance: tolerance.point })
         })?;
         place = pcurve.ends().1;
         walk.chains.push(chain.clone());

@@ -9,7 +9,7 @@ use crate::lang::eval::scene::Scene;
 use crate::lang::eval::std::kinds::{EdgeOf, EdgeOrSurface, Faces};
 use crate::lang::values::conversions::{Angle, Length};
 use crate::lang::values::value::Value;
-use crate::model::fault::ModelFault;
+use crate::model::fault::ShellFault;
 use crate::model::{Contact, EdgeId, SurfaceId};
 use crate::surface::Surface;
 use crate::{builtins, fields};
@@ -34,7 +34,7 @@ fn shared(scene: &Scene, (a, b): (&[Surface], Option<&[Surface]>), (near, tolera
         let (first, last) = found.map_or((ours.first().copied(), theirs.first().copied()), |f| (Some(f.surfaces.0), Some(f.surfaces.1)));
         let (a, b) = (first.map(origin).unwrap_or_default(), last.map(origin).unwrap_or_default());
         let (gap, at) = found.map_or((0.0, glam::DVec3::ZERO), |f| (f.gap, f.at));
-        return Err(ModelFault::NotAdjacent { a, b, gap, at }.into());
+        return Err(ShellFault::NotAdjacent { a, b, gap, at, near: false, snap: None }.into());
     }
     Ok(contacts)
 }

@@ -15,7 +15,7 @@ use crate::network::Chain;
 use crate::surface::core::shape::Shape;
 use crate::surface::core::surface::{Parts, Surface};
 use crate::surface::data::kind::{Domain, SurfaceKind};
-use crate::surface::faults::SurfaceFault;
+use crate::surface::faults::BorderFault;
 use crate::surface::rails::side::{Border, Side as Edge};
 use crate::surface::rails::trim_curve::{Pcurve, TrimCurve};
 use crate::surface::shapes::height_field::Field;
@@ -152,7 +152,7 @@ pub fn surface(field: Field, runs: &[Vec<Side>], points: usize, origin: Origin, 
         let chain = Chain::of_curve(curve);
         let pcurve = Pcurve::follow(&base, (&chain, 0.0, 1.0), start, tolerance.point).map_err(|off| {
             let (off, at) = (off.distance, off.at);
-            Fault::from(SurfaceFault::LoopOutsideSurface { of: origin, surface: origin, off, at, tolerance: tolerance.point })
+            Fault::from(BorderFault::LoopOutsideSurface { of: origin, surface: origin, off, at, tolerance: tolerance.point })
         })?;
         walk.borders.push(Border::chain(chain.clone(), false));
         walk.courses.push(TrimCurve::Pcurve(Arc::new(pcurve)));

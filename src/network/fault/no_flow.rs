@@ -76,12 +76,11 @@ pub enum NoFlow {
 
 /// What the report says of curves that span no flow.
 pub(crate) fn describe(curves: &[Origin], why: &NoFlow, say: &dyn Say) -> Report {
-    let report = |text: String| Report::new("E601", text);
     match why {
-        NoFlow::TooFewCurves { given } => report(format!("{given} curve{} cannot span a surface", if *given == 1 { "" } else { "s" }))
+        NoFlow::TooFewCurves { given } => Report::new(format!("{given} curve{} cannot span a surface", if *given == 1 { "" } else { "s" }))
             .label(Subject::Call, "needs four borders, or three, or two with common ends")
             .help("coons(south, east, north, west)"),
-        NoFlow::NoFamilies { a, b, at } => report(format!(
+        NoFlow::NoFamilies { a, b, at } => Report::new(format!(
             "these {} curves do not form two families: {} and {} meet at {} but would run the same way",
             curves.len(),
             say.quoted(*a, "one curve"),
@@ -91,7 +90,7 @@ pub(crate) fn describe(curves: &[Origin], why: &NoFlow, say: &dyn Say) -> Report
         .at(*a, "this curve")
         .at(*b, "meets this one")
         .help("say which run along u and which along v: `u: [a, b], v: [c, d]`"),
-        NoFlow::Alone { curve, nearest, gap, at } => report(format!(
+        NoFlow::Alone { curve, nearest, gap, at } => Report::new(format!(
             "{} meets none of the other curves; {} is nearest, {} away at {}",
             say.quoted(*curve, "a curve"),
             say.quoted(*nearest, "another one"),
@@ -101,7 +100,7 @@ pub(crate) fn describe(curves: &[Origin], why: &NoFlow, say: &dyn Say) -> Report
         .at(*curve, "meets nothing")
         .at(*nearest, "is nearest")
         .help("end the curves at the same declared points"),
-        NoFlow::Missing { found, wanted, a, b, gap, at } => report(format!(
+        NoFlow::Missing { found, wanted, a, b, gap, at } => Report::new(format!(
             "{found} of {wanted} crossings found: {} and {} share no node; their nearest points are {} apart at {}",
             say.quoted(*a, "one curve"),
             say.quoted(*b, "another one"),
@@ -112,13 +111,13 @@ pub(crate) fn describe(curves: &[Origin], why: &NoFlow, say: &dyn Say) -> Report
         .at(*b, "does not meet this one")
         .help("end both at the same declared point"),
         NoFlow::Several { decide } => {
-            let mut report = report(format!("these {} curves span more than one surface", curves.len()));
+            let mut report = Report::new(format!("these {} curves span more than one surface", curves.len()));
             for curve in curves {
                 report = report.at(*curve, "");
             }
             report.help(format!("decide with {decide}"))
         }
-        NoFlow::HalfClosed { closed, open } => report(format!(
+        NoFlow::HalfClosed { closed, open } => Report::new(format!(
             "{} is closed and {} is open, but the two run the same way",
             say.quoted(*closed, "one curve"),
             say.quoted(*open, "another one")
@@ -126,13 +125,13 @@ pub(crate) fn describe(curves: &[Origin], why: &NoFlow, say: &dyn Say) -> Report
         .at(*closed, "closed")
         .at(*open, "open")
         .help("close both, or cut the closed one: `c[A..B]`"),
-        NoFlow::NotClosed { open } => report(format!("the surface cannot close: {} is open", say.quoted(*open, "a curve along u")))
+        NoFlow::NotClosed { open } => Report::new(format!("the surface cannot close: {} is open", say.quoted(*open, "a curve along u")))
             .label(Subject::Argument("closed"), "asked for here")
             .at(*open, "open")
             .help("leave out `closed: true`, or take a closed curve"),
         NoFlow::NoPole { pole, nearest } => {
             let ((here, there), away) = (say.pair(*pole, *nearest), say.length(pole.distance(*nearest)));
-            report(format!("no curves end together at the pole {here}; the nearest end is {away} away at {there}"))
+            Report::new(format!("no curves end together at the pole {here}; the nearest end is {away} away at {there}"))
                 .label(Subject::Argument("pole"), "not a common end")
                 .help("the pole is the point in which all curves of one family end")
         }

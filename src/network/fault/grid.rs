@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::no_flow::{self, NoFlow};
-use crate::base::fault::{Describe, Report, Say};
+use crate::base::fault::{Describe, Report, Say, codes};
 use crate::base::origin::Origin;
 
 /// Why curves make no grid. Lengths are model units.
@@ -67,20 +67,19 @@ pub enum GridFault {
 }
 
 impl Describe for GridFault {
+    codes! { FlowUnknown "E601", GridIncomplete "E602", GridDouble "E603", GridNotMonotone "E604", FamilyCrosses "E605" }
+
     fn describe(&self, say: &dyn Say) -> Report {
         use GridFault as F;
         match self {
             F::FlowUnknown { curves, why } => no_flow::describe(curves, why, say),
-            F::GridIncomplete { a, b, gap, at, found, wanted } => Report::new(
-                "E602",
-                format!(
-                    "{} and {} share no node; their nearest points are {} apart at {}",
-                    say.quoted(*a, "a curve along u"),
-                    say.quoted(*b, "a curve along v"),
-                    say.length(*gap),
-                    say.point(*at)
-                ),
-            )
+            F::GridIncomplete { a, b, gap, at, found, wanted } => Report::new(format!(
+                "{} and {} share no node; their nearest points are {} apart at {}",
+                say.quoted(*a, "a curve along u"),
+                say.quoted(*b, "a curve along v"),
+                say.length(*gap),
+                say.point(*at)
+            ))
             .at(*a, "this curve")
             .at(*b, "does not meet this one")
             .note(format!("{found} of {wanted} crossings of the grid were found"))
@@ -88,30 +87,26 @@ impl Describe for GridFault {
             F::GridDouble { a, b, first, second } => {
                 let (here, there) = say.pair(*first, *second);
                 let (one, other) = (say.quoted(*a, "one curve"), say.quoted(*b, "another one"));
-                Report::new("E603", format!("{one} and {other} meet twice, at {here} and at {there}"))
-                    .at(*a, "this curve")
-                    .at(*b, "and this one")
+                Report::new(format!("{one} and {other} meet twice, at {here} and at {there}"))
+                    .both(*a, *b, "this curve")
                     .help("take the run with one of the two meetings: `c[A..B]`")
             }
             F::GridNotMonotone { curve, a, b, first, second } => {
                 let (here, there) = say.pair(*first, *second);
                 let (one, next) = (say.quoted(*a, "the first"), say.quoted(*b, "the next"));
                 let along = say.quoted(*curve, "one curve");
-                Report::new("E604", format!("along {along} the curves come in the wrong order: {one} at {here}, {next} at {there}"))
+                Report::new(format!("along {along} the curves come in the wrong order: {one} at {here}, {next} at {there}"))
                     .at(*curve, "met in another order than its neighbours")
                     .at(*a, "should come before")
                     .at(*b, "this one")
                     .help("every curve along u must meet the curves along v in the same order")
             }
-            F::FamilyCrosses { a, b, at } => Report::new(
-                "E605",
-                format!(
-                    "{} and {} run the same way but meet at {}",
-                    say.quoted(*a, "one curve"),
-                    say.quoted(*b, "another one"),
-                    say.point(*at)
-                ),
-            )
+            F::FamilyCrosses { a, b, at } => Report::new(format!(
+                "{} and {} run the same way but meet at {}",
+                say.quoted(*a, "one curve"),
+                say.quoted(*b, "another one"),
+                say.point(*at)
+            ))
             .at(*a, "this curve")
             .at(*b, "meets this one")
             .help("curves of one family may share a pole and nothing else; if this is one, say `pole: P`"),

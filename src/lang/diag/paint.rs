@@ -1,0 +1,53 @@
+//! Colours of reports, and the length of their words.
+
+use crate::base::fault::Severity;
+
+/// Characters of the longest message that is shown whole.
+const WORDS: usize = 2000;
+
+/// Words that quote something endless: their beginning and end. The JSON report has them whole.
+pub(super) fn shortened(words: &str) -> std::borrow::Cow<'_, str> {
+    let total = words.chars().count();
+    if total <= WORDS {
+        return words.into();
+    }
+    let begin: String = words.chars().take(WORDS / 2).collect();
+    let end: String = words.chars().skip(total - WORDS / 4).collect();
+    format!("{begin}…{end}").into()
+}
+
+/// Colours, or none.
+pub(super) struct Paint {
+    pub(super) on: bool,
+    pub(super) severity: Severity,
+}
+
+impl Paint {
+    fn with(&self, code: &str, text: &str) -> String {
+        if self.on { format!("\x1b[{code}m{text}\x1b[0m") } else { text.to_owned() }
+    }
+
+    fn strong(&self) -> &'static str {
+        match self.severity {
+            Severity::Error => "1;31",
+            Severity::Warning => "1;33",
+            Severity::Note => "1;36",
+        }
+    }
+
+    pub(super) fn head(&self, text: &str) -> String {
+        self.with(self.strong(), text)
+    }
+
+    pub(super) fn frame(&self, text: &str) -> String {
+        self.with("2", text)
+    }
+
+    pub(super) fn label(&self, text: &str) -> String {
+        self.with(&self.strong()[2..], text)
+    }
+
+    pub(super) fn word(&self, text: &str) -> String {
+        self.with("36", text)
+    }
+}
