@@ -14,8 +14,9 @@ use crate::base::tolerance::{EPSILON, NEAREST, NUDGE, ROUNDING_SHARE};
 use crate::geometry::construct::build::{all_different, composite, enough, finite, finite_points};
 use crate::geometry::construct::offset_build::{height_over, smooth_pieces};
 use crate::geometry::curves::composite::Composite;
-use crate::geometry::curves::curve::{Curve, Kind, Shape};
+use crate::geometry::curves::curve::{Curve, Shape};
 use crate::geometry::data::fault::CurveFault;
+use crate::geometry::data::kind::Kind;
 use crate::geometry::shapes::arc::EllipticArc;
 
 /// Steps of the radius from nothing to the wanted one, where nothing hinders.

@@ -14,7 +14,8 @@ use crate::base::origin::Origin;
 use crate::geometry::construct::build::{all_different, composite, enough, finite_points};
 use crate::geometry::construct::fewest::{finer, swings, turns};
 use crate::geometry::construct::spline::{open_slopes, periodic_slopes, through};
-use crate::geometry::curves::curve::{Curve, Kind, Shape};
+use crate::geometry::curves::curve::{Curve, Shape};
+use crate::geometry::data::kind::Kind;
 use crate::geometry::shapes::least_squares::{Cubics, DEGREE, Problem};
 use crate::geometry::shapes::nurbs::Nurbs;
 

@@ -14,8 +14,9 @@ use crate::base::solve;
 use crate::base::tolerance::{NEAREST, NUDGE, PARALLEL, Tolerance};
 use crate::geometry::construct::build::{arc_center, direction, finite};
 use crate::geometry::curves::composite::Composite;
-use crate::geometry::curves::curve::{Curve, Kind, Shape};
+use crate::geometry::curves::curve::{Curve, Shape};
 use crate::geometry::curves::offset::Offset;
+use crate::geometry::data::kind::Kind;
 use crate::geometry::query::intersect::{Hit, intersect};
 use crate::geometry::shapes::arc::EllipticArc;
 

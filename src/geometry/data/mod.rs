@@ -1,5 +1,6 @@
-//! What all curves have in common: points with derivatives, and motions.
+//! What all curves have in common: points with derivatives, kinds and motions.
 
 pub mod fault;
 pub mod jet;
+pub mod kind;
 pub mod motion;
