@@ -2,6 +2,7 @@
 //! or one line.
 
 pub mod coplanar;
+mod curve_overlap;
 pub mod curve_patch;
 pub mod fit;
 pub mod join_curves;
