@@ -8,7 +8,7 @@ use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::network::Chain;
 use crate::network::net_fault::NetFault;
-use crate::surface::blended::coons::evenly;
+use crate::surface::blended::family::evenly;
 use crate::surface::blended::gordon::{CurveNet, Named, blended};
 use crate::surface::blended::skin_align::{Read, Section, aligned, distances, runs_back};
 use crate::surface::blended::skin_ends::{Leaving, Spanned, ended};

@@ -9,7 +9,7 @@ use glam::DVec3;
 use crate::base::job;
 use crate::base::solve::dense;
 use crate::base::tolerance::Tolerance;
-use crate::surface::blended::coons::evenly;
+use crate::surface::blended::family::evenly;
 use crate::surface::blended::skin_ends::Spanned;
 use crate::surface::data::one_sided::OneSided;
 use crate::surface::rails::mixed::{Mixed, Part};

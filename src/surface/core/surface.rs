@@ -2,20 +2,19 @@
 
 use std::sync::{Arc, OnceLock};
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 use crate::base::bbox::Box3;
 use crate::base::digest::{StableHash, StableHasher};
 use crate::base::origin::Origin;
-use crate::base::tolerance::{POLE_STEP, SLIVER, Tolerance};
+use crate::base::tolerance::SLIVER;
 use crate::base::work::Once;
 use crate::geometry::Motion;
 use crate::network::Chain;
 use crate::surface::core::evened::Evened;
 use crate::surface::core::shape::Shape;
 use crate::surface::core::trim::Trim;
-use crate::surface::data::breaks::tidy;
-use crate::surface::data::jet::{Jet2, unit_normal};
+use crate::surface::data::jet::Jet2;
 use crate::surface::data::kind::{Domain, SurfaceKind};
 use crate::surface::data::one_sided::OneSided;
 use crate::surface::rails::rail::Rail;
@@ -222,54 +221,6 @@ impl Surface {
         self.jet(u, v).p
     }
 
-    /// Unit normal `du × dv`; at a pole the limit; zero only where the surface is singular.
-    pub fn normal(&self, u: f64, v: f64) -> DVec3 {
-        self.normal_lean(u, v, (OneSided::After, OneSided::After))
-    }
-
-    /// Unit normal of the smooth piece on the given side, see [`Surface::jet_one_sided`].
-    pub fn normal_lean(&self, u: f64, v: f64, lean: (OneSided, OneSided)) -> DVec3 {
-        let jet = self.jet_one_sided(u, v, lean);
-        if let Some(normal) = unit_normal(&jet) {
-            return normal;
-        }
-        let at_end = [v == 0.0, u == 1.0, v == 1.0, u == 0.0];
-        let pole =
-            (0..4).find(|&k| at_end[k] && self.0.parts.domain == Domain::Square && matches!(self.0.parts.borders[k].side, Side::Pole(_)));
-        pole.map_or(DVec3::ZERO, |k| self.pole_normal(k))
-    }
-
-    /// The normal of the pole on side `k`: the cross product of the tangents of the two borders that end there, or the
-    /// mean of the normals a step away where these are parallel.
-    fn pole_normal(&self, k: usize) -> DVec3 {
-        let place = |along: f64, inward: f64| match k {
-            0 => (along, inward),
-            1 => (1.0 - inward, along),
-            2 => (along, 1.0 - inward),
-            _ => (inward, along),
-        };
-        let inward = |along: f64| {
-            let (u, v) = place(along, 0.0);
-            let lean =
-                (if u == 1.0 { OneSided::Before } else { OneSided::After }, if v == 1.0 { OneSided::Before } else { OneSided::After });
-            let jet = self.jet_one_sided(u, v, lean);
-            [jet.dv, -jet.du, -jet.dv, jet.du][k]
-        };
-        const SAMPLES: u32 = 16;
-        let mean = (0..SAMPLES).fold(DVec3::ZERO, |sum, i| {
-            let (u, v) = place((f64::from(i) + 0.5) / f64::from(SAMPLES), POLE_STEP);
-            sum + unit_normal(&self.jet(u, v)).unwrap_or(DVec3::ZERO)
-        });
-        let (first, last) = (inward(0.0), inward(1.0));
-        let cross = first.cross(last);
-        if cross.length() > Tolerance::new(0.0, 0.0).angle * first.length() * last.length() {
-            // Borders say the plane, the neighbourhood says which side is up.
-            let normal = cross.normalize_or_zero();
-            return if normal.dot(mean) < 0.0 { -normal } else { normal };
-        }
-        mean.normalize_or_zero()
-    }
-
     /// Points of the tensor grid `us × vs`, row by row (u fastest), curves evaluated once per row.
     ///
     /// `out` holds `us.len() * vs.len()` points.
@@ -305,46 +256,6 @@ impl Surface {
             self.0.parts.shape.jets(us, vs, &mut out);
         }
         out
-    }
-
-    /// Interior values of u (first) and v (second) where the surface has a kink line, ascending.
-    pub fn kinks(&self) -> (&[f64], &[f64]) {
-        (&self.0.parts.kinks.0, &self.0.parts.kinks.1)
-    }
-
-    /// Interior values of u (first) and v (second) where the surface is less than analytic: kinks, network lines, joints
-    /// and knots of the curves, ascending. Between them quadrature and bounds behave.
-    pub fn breaks(&self) -> (Vec<f64>, Vec<f64>) {
-        let (us, vs) = self.0.parts.shape.breaks();
-        let turned = |list: &[f64]| list.iter().rev().map(|x| 1.0 - x).collect();
-        match (self.0.parts.flipped, self.ground()) {
-            (false, _) => (us, vs),
-            (true, Domain::Triangle) => (vs, us),
-            (true, _) => (us, turned(&vs)),
-        }
-    }
-
-    /// Whether it, or what it was cut from, goes through scattered points: it is analytic over its triangles.
-    pub fn is_scattered(&self) -> bool {
-        matches!(self.0.parts.shape, Shape::Scatter(_))
-    }
-
-    /// The triangles of (u, v) over which the surface is analytic, all of a whole surface through scattered points; empty for others.
-    pub fn triangles(&self) -> Vec<[DVec2; 3]> {
-        let Shape::Scatter(field) = &self.0.parts.shape else { return Vec::new() };
-        let turn = |c: DVec2| if self.0.parts.flipped { DVec2::new(c.x, 1.0 - c.y) } else { c };
-        field.pieces().iter().map(|piece| piece.corners.map(turn)).collect()
-    }
-
-    /// Ends of the cells that a review samples: network lines and kinks (of a net: knots), inner ones, u first.
-    pub fn cells(&self) -> (Vec<f64>, Vec<f64>) {
-        let (us, vs) = self.0.parts.shape.cells();
-        let turned = |list: &[f64]| list.iter().rev().map(|x| 1.0 - x).collect();
-        match (self.0.parts.flipped, self.ground()) {
-            (false, _) => (us, vs),
-            (true, Domain::Triangle) => (vs, us),
-            (true, _) => (us, turned(&vs)),
-        }
     }
 
     /// How many sides: 4, 3 for a triangle, any number for a plane without a map, 0 when unbounded.
@@ -453,14 +364,5 @@ impl Surface {
     /// A box that holds the surface, of control points and curve boxes: larger than the exact one.
     pub fn hull(&self) -> Box3 {
         self.0.parts.shape.hull()
-    }
-}
-
-impl Surface {
-    /// Shares of the way along a straight line between two (u, v) at which it crosses one of [`Surface::breaks`], ascending, 0 and 1 left out.
-    pub fn breaks_between(&self, from: (f64, f64), to: (f64, f64)) -> Vec<f64> {
-        let (us, vs) = self.breaks();
-        let along = |lines: Vec<f64>, a: f64, b: f64| lines.into_iter().filter(move |_| a != b).map(move |x| (x - a) / (b - a));
-        tidy(along(us, from.0, to.0).chain(along(vs, from.1, to.1)).collect(), f64::EPSILON * 64.0)
     }
 }

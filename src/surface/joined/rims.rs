@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::base::job;
 use crate::base::tolerance::Tolerance;
-use crate::surface::core::joined::{Piece, Turn, foot, foot_round};
+use crate::surface::core::joined_piece::{Piece, Turn, foot, foot_round};
 use crate::surface::core::surface::Surface;
 use crate::surface::data::one_sided::OneSided;
 use crate::surface::rails::side::Side;
