@@ -10,7 +10,7 @@ use crate::base::job;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::construct::fewest::{finer, swings, turns};
-use crate::geometry::construct::fit::{bessel, bessel_last};
+use crate::geometry::construct::fit_curve::{bessel, bessel_last};
 use crate::geometry::shapes::least_squares::{Cubics, DEGREE, Problem};
 use crate::surface::core::surface::Surface;
 use crate::surface::data::kind::SurfaceKind;
