@@ -17,7 +17,7 @@ use crate::surface::data::kind::Domain;
 use crate::surface::data::one_sided::OneSided;
 use crate::surface::rails::side::{Border, Side};
 use crate::surface::rails::trim_curve::TrimCurve;
-use crate::surface::trims::trim::{TrimLoop, natural};
+use crate::surface::trims::trim_loop::{TrimLoop, natural};
 
 /// Share of the tolerance within which copies of a border are.
 const SHARE: f64 = 0.125;

@@ -22,7 +22,7 @@ use crate::surface::offset::boundary::{Boundary, boundaries, whole};
 use crate::surface::offset::exact::{folds, level, rough, swept};
 use crate::surface::rails::side::{Border, Side};
 use crate::surface::rails::trim_curve::{Pcurve, TrimCurve};
-use crate::surface::trims::trim::{TrimLoop, assembled, natural};
+use crate::surface::trims::trim_loop::{TrimLoop, assembled, natural};
 
 /// The offset of a trimmed surface whose surface below has no creases, with the copies of its borders, loop by loop.
 pub(crate) fn trimmed(surface: &Surface, distance: f64, origin: Origin, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
@@ -30,13 +30,14 @@ pub(crate) fn trimmed(surface: &Surface, distance: f64, origin: Origin, toleranc
     let each = |boundary: &Option<Boundary>| boundary.as_ref().map(|boundary| boundary.copy(distance, origin, tolerance)).transpose();
     let copies: Vec<Vec<Option<Chain>>> =
         boundaries(surface, &walks, tolerance).iter().map(|row| row.iter().map(each).collect::<Result<_>>()).collect::<Result<_>>()?;
-    with_loops(surface, (&walks, &copies), distance, origin, tolerance)
+    with_loops(surface, &walks, &copies, distance, origin, tolerance)
 }
 
 /// The same with the copies of its borders at that distance given.
 pub(crate) fn with_loops(
     surface: &Surface,
-    (walks, copies): (&[TrimLoop], &[Vec<Option<Chain>>]),
+    walks: &[TrimLoop],
+    copies: &[Vec<Option<Chain>>],
     distance: f64,
     origin: Origin,
     tolerance: &Tolerance,
@@ -87,7 +88,7 @@ impl Carrier<'_> {
                 made.courses.push(TrimCurve::Line(a.into(), b.into()));
                 continue;
             };
-            let pcurve = Pcurve::follow(self.ground, (chain, 0.0, 1.0), self.place(first), self.tolerance.point).map_err(|off| {
+            let pcurve = Pcurve::follow(self.ground, chain, (0.0, 1.0), self.place(first), self.tolerance.point).map_err(|off| {
                 let (of, surface) = (chain.origin(), self.ground.origin());
                 SurfaceFault::LoopOutsideSurface { of, surface, off: off.distance, at: off.at, tolerance: self.tolerance.point }
             })?;

@@ -78,14 +78,14 @@ fn tip(surface: &Surface, tolerance: &Tolerance) -> Option<DVec3> {
         let Side::Pole(p) = surface.side(k) else { return None };
         let ((u, v), lean) = (place(k, 0.5, 0.0), (OneSided::After, OneSided::After));
         let upright = surface.normal_lean(u, v, lean);
-        let enclosure = |inward: f64| {
+        let most_off = |inward: f64| {
             let normal = |i: usize| {
                 let (u, v) = place(k, (i as f64 + 0.5) / AROUND as f64, inward);
                 math::angle_between(surface.normal(u, v), upright)
             };
             (0..AROUND).map(normal).fold(0.0, f64::max)
         };
-        let (far, near) = (enclosure(POLE_STEP), enclosure(NEARER * POLE_STEP));
+        let (far, near) = (most_off(POLE_STEP), most_off(NEARER * POLE_STEP));
         (near > tolerance.angle && near > 0.5 * far).then_some(p)
     })
 }
@@ -194,7 +194,7 @@ pub(crate) fn parts_of(surface: &Surface, origin: Origin, tolerance: &Tolerance)
 /// The offset of a sweep whose profile lies in a plane that holds its normals; none for other surfaces.
 pub(crate) fn swept(surface: &Surface, distance: f64, origin: Origin, tolerance: &Tolerance) -> Result<Option<Surface>> {
     let Some((profile, path)) = swept_by(surface)? else { return Ok(None) };
-    let moved = moved_profile((&profile, path), distance, origin, tolerance)?;
+    let moved = moved_profile(&profile, path, distance, origin, tolerance)?;
     let made = match path {
         Path::Straight { by } => extrude(&moved, by, origin, tolerance)?,
         Path::Turn { about, axis, angle } => revolve(&moved, &Axis { about, direction: axis }, angle, origin, tolerance)?,
@@ -203,7 +203,7 @@ pub(crate) fn swept(surface: &Surface, distance: f64, origin: Origin, tolerance:
 }
 
 /// The profile of the offset of a sweep.
-pub(crate) fn moved_profile((profile, path): (&Profile, Path), distance: f64, origin: Origin, tolerance: &Tolerance) -> Result<Chain> {
+pub(crate) fn moved_profile(profile: &Profile, path: Path, distance: f64, origin: Origin, tolerance: &Tolerance) -> Result<Chain> {
     let moved = if distance == 0.0 {
         profile.curve.clone()
     } else {
@@ -212,7 +212,7 @@ pub(crate) fn moved_profile((profile, path): (&Profile, Path), distance: f64, or
     let moved = Chain::of_curve(&moved);
     match path {
         Path::Straight { .. } => Ok(moved),
-        Path::Turn { about, axis, .. } => beside_axis((&profile.curve, &moved), &Axis { about, direction: axis }, distance, tolerance),
+        Path::Turn { about, axis, .. } => beside_axis(&profile.curve, &moved, &Axis { about, direction: axis }, distance, tolerance),
     }
 }
 

@@ -14,8 +14,8 @@ use crate::network::Chain;
 use crate::surface::core::surface::Surface;
 use crate::surface::faults::{WallEdge, WallFault};
 use crate::surface::offset::boundary::{Boundary, boundaries};
-use crate::surface::trims::holes::with_loops;
-use crate::surface::trims::trim::natural;
+use crate::surface::trims::trim::with_loops;
+use crate::surface::trims::trim_loop::natural;
 
 /// Borders that are no edge of two faces and yet everywhere within so many tolerances are not meant to be two.
 const BESIDE: f64 = 100.0;

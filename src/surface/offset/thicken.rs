@@ -21,8 +21,8 @@ use crate::surface::offset::joint::{Bend, Sheet};
 use crate::surface::offset::shell::layer;
 use crate::surface::rails::side::{Side, between};
 use crate::surface::shapes::nurbs::NurbsSurface;
-use crate::surface::trims::holes;
-use crate::surface::trims::trim::natural;
+use crate::surface::trims::trim::trim;
+use crate::surface::trims::trim_loop::natural;
 
 /// Copies of the borders of a face, loop by loop; none where it has none.
 type Copies = Vec<Vec<Option<Chain>>>;
@@ -53,7 +53,7 @@ pub fn thicken(surface: &Surface, (below, above): (f64, f64), origin: Origin, to
         if distance == 0.0 || surface.parts().trim.is_none() {
             return moved(surface, distance, origin, tolerance);
         }
-        with_loops(surface, (&walks, copies), distance, origin, tolerance)
+        with_loops(surface, &walks, copies, distance, origin, tolerance)
     };
     let ((inner, mut notes), (outer, more)) = (side(below, &low)?, side(above, &high)?);
     notes.extend(more);
@@ -126,10 +126,10 @@ fn flat_rim(low: &Chain, high: &Chain, origin: Origin, tolerance: &Tolerance) ->
     let closed = low.is_closed(tolerance) && high.is_closed(tolerance);
     let made = if closed {
         plane_face::bounded(std::slice::from_ref(high), origin, tolerance)
-            .and_then(|(face, _)| holes::trim(&face, &[], &[vec![low.clone()]], origin, tolerance))
+            .and_then(|(face, _)| trim(&face, &[], &[vec![low.clone()]], origin, tolerance))
             .or_else(|_| {
                 plane_face::bounded(std::slice::from_ref(low), origin, tolerance)
-                    .and_then(|(face, _)| holes::trim(&face, &[], &[vec![high.clone()]], origin, tolerance))
+                    .and_then(|(face, _)| trim(&face, &[], &[vec![high.clone()]], origin, tolerance))
             })
     } else {
         let ends = [line(low.start(), high.start(), origin)?, line(low.end(), high.end(), origin)?].map(|c| Chain::of_curve(&c));

@@ -18,7 +18,7 @@ use crate::surface::faults::CutFault;
 use crate::surface::rails::trim_curve::TrimCurve;
 use crate::surface::trims::cutters::Piece;
 use crate::surface::trims::faces::{Edge, Half, components, followers, is_plane, loops};
-use crate::surface::trims::trim::shifts;
+use crate::surface::trims::trim_loop::shifts;
 
 /// The loops of a face, each half edge with the turns by which it is moved in (u, v).
 pub(crate) type Face = Vec<Vec<(Half, DVec2)>>;

@@ -20,7 +20,7 @@ use crate::surface::rails::trim_curve::{Pcurve, TrimCurve};
 use crate::surface::trims::pcurve::{Off, is_pole};
 use crate::surface::trims::project::{Way, carried};
 use crate::surface::trims::shared_runs;
-use crate::surface::trims::trim::{TrimLoop, natural};
+use crate::surface::trims::trim_loop::{TrimLoop, natural};
 
 /// A border of the surface or a cutter, whole.
 #[derive(Clone, Debug)]
@@ -90,7 +90,7 @@ pub(crate) fn strands(base: &Surface, cutters: &[Chain], meets: Meets, tolerance
         for k in 0..sides {
             let (border, course) = (walk.borders[k].clone(), walk.courses[k].clone());
             let opposite = (sides == 4).then(|| walk.borders[(k + 2) % 4].turned());
-            all.push(of_border(base, (border, course), opposite, tolerance)?);
+            all.push(of_border(base, border, course, opposite, tolerance)?);
         }
     }
     for (k, chain) in cutters.iter().enumerate() {
@@ -122,7 +122,8 @@ fn mirror_cuts(all: &mut [Cutter], tolerance: &Tolerance) {
 
 pub(crate) fn of_border(
     base: &Surface,
-    (border, course): (Border, TrimCurve),
+    border: Border,
+    course: TrimCurve,
     opposite: Option<Border>,
     tolerance: &Tolerance,
 ) -> Result<Cutter> {
@@ -218,8 +219,10 @@ pub(crate) fn pieces(base: &Surface, strands: &[Cutter], tolerance: &Tolerance) 
             // A cutter along a seam makes a border of it.
             let seam = strand.seam && !strands.iter().any(|s| s.cutter.is_some() && lies_on(s));
             let piece = match &strand.border {
-                Some((border, course)) if whole => of_whole(k, border, course, run, seam),
-                Some((border, course)) => of_part(base, (k, strand.drawn), (border, course), (run, (w[0], w[1])), tolerance, seam)?,
+                Some((border, course)) => {
+                    let own = BorderCutter { cutter: k, border, course, is_drawn: strand.drawn, seam };
+                    if whole { own.whole(&run) } else { own.part(base, &run, (w[0], w[1]), tolerance)? }
+                }
                 None => match within(base, &loops, middle) {
                     Some(start) => of_cutter(base, k, run, start, tolerance)?,
                     None => continue,
@@ -232,7 +235,7 @@ pub(crate) fn pieces(base: &Surface, strands: &[Cutter], tolerance: &Tolerance) 
         if strand.chain.is_none()
             && let Some((border, TrimCurve::Line(a, b))) = &strand.border
         {
-            let added = at_pole(base, (k, border), (DVec2::from(*a), DVec2::from(*b)), &mut out, tolerance);
+            let added = at_pole(base, k, border, (DVec2::from(*a), DVec2::from(*b)), &mut out, tolerance);
             out.extend(added);
         }
     }
@@ -259,55 +262,64 @@ const MIDDLE: f64 = 0.4873;
 /// Where a piece is compared with another strand; it runs along one that is near at all of them.
 const ALONG: [f64; 3] = [MIDDLE, 0.2327, 0.7719];
 
-fn of_whole(strand: usize, border: &Border, course: &TrimCurve, run: Chain, seam: bool) -> Piece {
-    let places = course.places();
-    let p = (run.start(), run.point(MIDDLE), run.end());
-    let uv = (places[0], places[places.len() - 1]);
-    Piece { strand, border: border.clone(), course: course.clone(), uv, p, seam, rim: true }
+/// A border that is a cutter, of a surface or of a loop of it.
+struct BorderCutter<'a> {
+    /// Number of the cutter.
+    cutter: usize,
+    border: &'a Border,
+    course: &'a TrimCurve,
+    /// Whether its curve was made for it.
+    is_drawn: bool,
+    /// Whether its pieces are seams.
+    seam: bool,
 }
 
-fn of_part(
-    base: &Surface,
-    (strand, drawn): (usize, bool),
-    (border, course): (&Border, &TrimCurve),
-    (run, (from, to)): (Chain, (f64, f64)),
-    tolerance: &Tolerance,
-    seam: bool,
-) -> Result<Piece> {
-    let about = |f: f64| match course {
-        TrimCurve::Line(a, b) => DVec2::from(*a).lerp(DVec2::from(*b), f),
-        TrimCurve::Pcurve(pcurve) => pcurve.share(f),
-    };
-    let p = (run.start(), run.point(MIDDLE), run.end());
-    let off = |off: Off| outside(base, &run, off, tolerance);
-    // From a pole the other end tells on which side of a seam the border runs.
-    let pcurve = if is_pole(base, about(from)) {
-        Pcurve::follow(base, (&run, 1.0, 0.0), about(to), tolerance.point).map(|pcurve| pcurve.turned())
-    } else {
-        Pcurve::follow(base, (&run, 0.0, 1.0), about(from), tolerance.point)
+impl BorderCutter<'_> {
+    /// The whole of it, along a curve.
+    fn whole(&self, run: &Chain) -> Piece {
+        let places = self.course.places();
+        let p = (run.start(), run.point(MIDDLE), run.end());
+        let uv = (places[0], places[places.len() - 1]);
+        Piece { strand: self.cutter, border: self.border.clone(), course: self.course.clone(), uv, p, seam: self.seam, rim: true }
     }
-    .map_err(off)?
-    .into_poles(base, &run);
-    if !drawn {
-        let (uv, course) = (pcurve.ends(), TrimCurve::Pcurve(Arc::new(pcurve)));
-        return Ok(Piece { strand, border: Border::chain(run.clone(), false), course, uv, p, seam, rim: true });
+
+    /// The part between two fractions, along a curve.
+    fn part(&self, base: &Surface, run: &Chain, (from, to): (f64, f64), tolerance: &Tolerance) -> Result<Piece> {
+        let about = |f: f64| match self.course {
+            TrimCurve::Line(a, b) => DVec2::from(*a).lerp(DVec2::from(*b), f),
+            TrimCurve::Pcurve(pcurve) => pcurve.share(f),
+        };
+        let p = (run.start(), run.point(MIDDLE), run.end());
+        let off = |off: Off| outside(base, run, off, tolerance);
+        // From a pole the other end tells on which side of a seam the border runs.
+        let pcurve = if is_pole(base, about(from)) {
+            Pcurve::follow(base, run, (1.0, 0.0), about(to), tolerance.point).map(|pcurve| pcurve.turned())
+        } else {
+            Pcurve::follow(base, run, (0.0, 1.0), about(from), tolerance.point)
+        }
+        .map_err(off)?
+        .into_poles(base, run);
+        if !self.is_drawn {
+            let (uv, course) = (pcurve.ends(), TrimCurve::Pcurve(Arc::new(pcurve)));
+            return Ok(Piece { strand: self.cutter, border: Border::chain(run.clone(), false), course, uv, p, seam: self.seam, rim: true });
+        }
+        // The border is straight in (u, v): its parts are.
+        let (a, b) = (about(0.0), about(1.0));
+        let onto = |q: DVec2, f: f64| {
+            let share = if f <= 0.0 || f >= 1.0 { f } else { (q - a).dot(b - a) / (b - a).length_squared() };
+            a.lerp(b, share)
+        };
+        let uv = (onto(pcurve.ends().0, from), onto(pcurve.ends().1, to));
+        let course = TrimCurve::Line(uv.0.into(), uv.1.into());
+        Ok(Piece { strand: self.cutter, border: Border::straight(self.border.side.clone()), course, uv, p, seam: self.seam, rim: true })
     }
-    // The border is straight in (u, v): its parts are.
-    let (a, b) = (about(0.0), about(1.0));
-    let onto = |q: DVec2, f: f64| {
-        let share = if f <= 0.0 || f >= 1.0 { f } else { (q - a).dot(b - a) / (b - a).length_squared() };
-        a.lerp(b, share)
-    };
-    let uv = (onto(pcurve.ends().0, from), onto(pcurve.ends().1, to));
-    let course = TrimCurve::Line(uv.0.into(), uv.1.into());
-    Ok(Piece { strand, border: Border::straight(border.side.clone()), course, uv, p, seam, rim: true })
 }
 
 /// A piece of a cutter, with the place of its middle.
 fn of_cutter(base: &Surface, strand: usize, run: Chain, start: DVec2, tolerance: &Tolerance) -> Result<Piece> {
     let off = |off: Off| outside(base, &run, off, tolerance);
-    let before = Pcurve::follow(base, (&run, MIDDLE, 0.0), start, tolerance.point).map_err(off)?;
-    let after = Pcurve::follow(base, (&run, MIDDLE, 1.0), start, tolerance.point).map_err(off)?;
+    let before = Pcurve::follow(base, &run, (MIDDLE, 0.0), start, tolerance.point).map_err(off)?;
+    let after = Pcurve::follow(base, &run, (MIDDLE, 1.0), start, tolerance.point).map_err(off)?;
     let pcurve = before.turned().then(&after).into_poles(base, &run);
     let p = (run.start(), run.point(MIDDLE), run.end());
     let (uv, border) = (pcurve.ends(), Border::chain(run.clone(), false));
@@ -322,7 +334,8 @@ fn outside(base: &Surface, run: &Chain, off: Off, tolerance: &Tolerance) -> Faul
 /// A pole, parted where cutters run into it; ends beside an end of it are put there.
 fn at_pole(
     base: &Surface,
-    (strand, border): (usize, &Border),
+    strand: usize,
+    border: &Border,
     (a, b): (DVec2, DVec2),
     pieces: &mut [Piece],
     tolerance: &Tolerance,

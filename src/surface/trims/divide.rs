@@ -21,7 +21,7 @@ use crate::surface::trims::cells::{Cells, Face};
 use crate::surface::trims::cutters::{Cutter, Meets, Piece, bounded, pieces, strands, within};
 use crate::surface::trims::faces::{Edge, bridges, followers, is_plane, loops, without_tails};
 use crate::surface::trims::pcurve::is_pole;
-use crate::surface::trims::trim::{TrimLoop, assembled, natural};
+use crate::surface::trims::trim_loop::{TrimLoop, assembled, natural};
 
 /// Divides a surface by curves on it, together with its own border, and keeps the part with a point.
 ///

@@ -20,7 +20,7 @@ use crate::surface::faults::LoopFault;
 use crate::surface::rails::side::Side;
 use crate::surface::rails::trim_curve::TrimCurve;
 use crate::surface::trims::cutters::of_border;
-use crate::surface::trims::trim::TrimLoop;
+use crate::surface::trims::trim_loop::TrimLoop;
 
 /// Meetings nearer to each other than this many tolerances are one.
 const REACH: f64 = 4.0;
@@ -52,7 +52,7 @@ impl Ring {
         let sides = walk.borders.len();
         for (k, (border, course)) in walk.borders.iter().zip(&walk.courses).enumerate() {
             let opposite = (sides == 4).then(|| walk.borders[(k + 2) % 4].turned());
-            let strand = of_border(base, (border.clone(), course.clone()), opposite, tolerance)?;
+            let strand = of_border(base, border.clone(), course.clone(), opposite, tolerance)?;
             if let Some(chain) = strand.chain {
                 if strand.seam { seams.push(chain) } else { chains.push(chain) }
             }

@@ -13,7 +13,7 @@ use crate::surface::core::surface::Surface;
 use crate::surface::rails::side::Side;
 use crate::surface::rails::trim_curve::TrimCurve;
 use crate::surface::trims::divide::divide;
-use crate::surface::trims::trim::{TrimLoop, natural};
+use crate::surface::trims::trim_loop::{TrimLoop, natural};
 
 /// Which part a loop keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

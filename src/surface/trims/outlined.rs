@@ -24,7 +24,7 @@ use crate::surface::rails::trim_curve::TrimCurve;
 use crate::surface::trims::cells::Cells;
 use crate::surface::trims::cutters::{Meets, Piece};
 use crate::surface::trims::divide::{dividing, walks};
-use crate::surface::trims::trim::{assembled, shifts};
+use crate::surface::trims::trim_loop::{assembled, shifts};
 
 /// Where two curves are compared, as shares of their lengths.
 const SHARES: [f64; 5] = [0.0, 0.23, 0.48, 0.77, 1.0];
@@ -188,14 +188,14 @@ impl Sides<'_> {
             }
             let decides = (0..sum.len()).find(|k| sum[*k].abs() > self.tolerance.rounding);
             let as_is = decides.is_none_or(|k| sum[k] > 0.0);
-            doubts.extend(self.doubt(&group, decides.unwrap_or(GROUNDS.len() - 1), (&sum, &all)));
+            doubts.extend(self.doubt(&group, decides.unwrap_or(GROUNDS.len() - 1), &sum, &all));
             group.iter().for_each(|cell| kept[*cell] = (side[*cell] == Some(true)) == as_is);
         }
         kept.iter().any(|k| *k).then_some((kept, doubts))
     }
 
     /// What speaks for the side of a group of cells that is not kept, where anything does.
-    fn doubt(&self, group: &[usize], decides: usize, (sum, all): (&Votes, &Votes)) -> Option<Doubt> {
+    fn doubt(&self, group: &[usize], decides: usize, sum: &Votes, all: &Votes) -> Option<Doubt> {
         let share = if all[decides] > 0.0 { 0.5 + 0.5 * sum[decides].abs() / all[decides] } else { 0.5 };
         if group.len() < 2 || share > 1.0 - ROUNDING_SHARE {
             return None;
@@ -245,7 +245,7 @@ impl Sides<'_> {
             for chain in inner {
                 let p = chain.point(MIDDLE);
                 let foot = DVec2::from(nearest.at(p).uv);
-                let on_seam = |piece: &&Piece| piece.seam && near(self.base, piece, (p, foot), ONE * self.tolerance.point);
+                let on_seam = |piece: &&Piece| piece.seam && near(self.base, piece, p, foot, ONE * self.tolerance.point);
                 let beside = (0..self.pieces.len()).filter(|k| on_seam(&&self.pieces[*k])).filter_map(|k| self.cells.beside(k)[0]);
                 let beside: Vec<usize> = beside.collect();
                 let found = if beside.is_empty() { self.cells.at(foot).into_iter().collect() } else { beside };
@@ -297,7 +297,7 @@ fn middle(base: &Surface, piece: &Piece) -> Option<(DVec3, DVec3)> {
 }
 
 /// Whether a point with its place on the surface lies on a piece.
-fn near(base: &Surface, piece: &Piece, (p, foot): (DVec3, DVec2), room: f64) -> bool {
+fn near(base: &Surface, piece: &Piece, p: DVec3, foot: DVec2, room: f64) -> bool {
     match (piece.own_chain(), &piece.course) {
         (Some(chain), _) => chain.closest(p).2 <= room,
         (None, TrimCurve::Line(a, b)) => {

@@ -37,17 +37,17 @@ impl Pcurve {
     /// than `near`.
     ///
     /// From a pole, where u (or v) says nothing, the way is found from the other end.
-    pub fn follow(surface: &Surface, (chain, from, to): (&Chain, f64, f64), start: DVec2, near: f64) -> Result<Self, Off> {
+    pub fn follow(surface: &Surface, chain: &Chain, (from, to): (f64, f64), start: DVec2, near: f64) -> Result<Self, Off> {
         if is_pole(surface, start) {
             let end = closest(surface, chain.point(to)).uv.into();
             if !is_pole(surface, end) {
-                return Self::along(surface, (chain, to, from), end, near).map(|pcurve| pcurve.turned());
+                return Self::along(surface, chain, (to, from), end, near).map(|pcurve| pcurve.turned());
             }
         }
-        Self::along(surface, (chain, from, to), start, near)
+        Self::along(surface, chain, (from, to), start, near)
     }
 
-    fn along(surface: &Surface, (chain, from, to): (&Chain, f64, f64), start: DVec2, near: f64) -> Result<Self, Off> {
+    fn along(surface: &Surface, chain: &Chain, (from, to): (f64, f64), start: DVec2, near: f64) -> Result<Self, Off> {
         let stops = chain_breaks(chain);
         let (low, high) = (from.min(to), from.max(to));
         let mut cuts: Vec<f64> = stops.into_iter().filter(|f| *f > low && *f < high).collect();
