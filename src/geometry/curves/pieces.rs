@@ -97,14 +97,14 @@ impl Node {
     pub(crate) fn new(view: &View, t: (f64, f64), p: (DVec3, DVec3), rates: Rates) -> Self {
         let h = t.1 - t.0;
         let at = view.curve.jet(t.0 + 0.5 * h);
-        let enclosure = 0.5 * h * rates.turn;
+        let half_angle = 0.5 * h * rates.turn;
         let chord = p.0.distance(p.1);
         let (mut axis, mut cone) = (DVec3::ZERO, (1.0, 0.0));
         let mut bulge = rates.bend * h * h * 0.125;
-        if enclosure < std::f64::consts::FRAC_PI_2 {
+        if half_angle < std::f64::consts::FRAC_PI_2 {
             axis = at.d1.normalize_or_zero();
-            cone = if axis == DVec3::ZERO { (1.0, 0.0) } else { math::sin_cos(enclosure) };
-            // Tangents within the cone keep the curve within chord/2 · tan(enclosure) of the chord.
+            cone = if axis == DVec3::ZERO { (1.0, 0.0) } else { math::sin_cos(half_angle) };
+            // Tangents within the cone keep the curve within chord/2 · tan(half_angle) of the chord.
             if cone.1 > 0.0 {
                 bulge = bulge.min(0.5 * chord * cone.0 / cone.1);
             }

@@ -229,7 +229,7 @@ impl Describe for CurveFault {
     fn describe(&self, say: &dyn Say) -> Report {
         let name = say.quoted(self.origin(), "this curve");
         match self {
-            Self::ZeroLength { of, length, tolerance } => zero_length(say, *of, (*length, *tolerance)),
+            Self::ZeroLength { of, length, tolerance } => zero_length(say, *of, *length, *tolerance),
             Self::TooFewPoints { what, argument, needed, given, .. } => {
                 let points = if *needed == 1 { "point" } else { "points" };
                 Report::new("E402", format!("{what} needs at least {needed} {points}, got {given}"))
@@ -279,7 +279,7 @@ impl Describe for CurveFault {
             Self::NotConverged { of, what, at } => {
                 Report::new("E413", format!("{what} could not be determined near {}", say.point(*at))).at(*of, "on this curve")
             }
-            Self::CornerTooNarrow { argument, wanted, largest, at, .. } => narrow_corner(say, argument, (*wanted, *largest), *at),
+            Self::CornerTooNarrow { argument, wanted, largest, at, .. } => narrow_corner(say, argument, *wanted, *largest, *at),
             Self::NoCorner { at: None, .. } => {
                 Report::new("E415", format!("{name} has no corner")).label(Subject::Call, "nothing to round or cut")
             }
@@ -306,7 +306,7 @@ impl Describe for CurveFault {
 /// Digits of a largest size in a message.
 const TOLD_DIGITS: i32 = 3;
 
-fn narrow_corner(say: &dyn Say, argument: &'static str, (wanted, largest): (f64, f64), at: DVec3) -> Report {
+fn narrow_corner(say: &dyn Say, argument: &'static str, wanted: f64, largest: f64, at: DVec3) -> Report {
     let (what, size) = if argument == "length" { ("cut", "length") } else { ("rounding", "radius") };
     if largest <= 0.0 {
         let message = format!("no {what} fits the corner at {}: the curve turns straight back there", say.point(at));
@@ -324,7 +324,7 @@ fn narrow_corner(say: &dyn Say, argument: &'static str, (wanted, largest): (f64,
         .edit(Subject::Argument(argument), Edit::Put(put))
 }
 
-fn zero_length(say: &dyn Say, of: Origin, (length, tolerance): (f64, f64)) -> Report {
+fn zero_length(say: &dyn Say, of: Origin, length: f64, tolerance: f64) -> Report {
     let name = say.quoted(of, "this curve");
     if tolerance == 0.0 {
         return Report::new("E401", format!("{name} has no length: it starts and ends at one point")).at(of, "nothing to draw");

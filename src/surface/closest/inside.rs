@@ -81,7 +81,7 @@ impl Surface {
                     if p.cmplt(low).any() || p.cmpgt(high).any() {
                         return angle(at[0].1, at[at.len() - 1].1, p);
                     }
-                    at.windows(2).map(|w| self.turn_of(chain, (w[0], w[1]), p, (MAX_DEPTH, &mut { MOST }))).sum()
+                    at.windows(2).map(|w| self.turn_of(chain, (w[0], w[1]), p, MAX_DEPTH, &mut { MOST })).sum()
                 };
                 pcurve.stretches().map(turned).sum()
             }
@@ -89,7 +89,7 @@ impl Surface {
     }
 
     /// The same for a stretch of a chain between two of its feet, halved while the place may lie between it and its chord.
-    fn turn_of(&self, chain: &Chain, ((fa, a), (fb, b)): (Foot, Foot), p: DVec2, (deep, left): (u32, &mut u32)) -> f64 {
+    fn turn_of(&self, chain: &Chain, ((fa, a), (fb, b)): (Foot, Foot), p: DVec2, deep: u32, left: &mut u32) -> f64 {
         let length = a.distance(b);
         let nearest = {
             let share = ((p - a).dot(b - a) / (length * length)).clamp(0.0, 1.0);
@@ -105,8 +105,8 @@ impl Surface {
             Some((u, v)) => DVec2::new(u, v),
             None => foot(self.evaluator(), chain.point(middle), guess).0,
         };
-        let first = self.turn_of(chain, ((fa, a), (middle, at)), p, (deep - 1, left));
-        first + self.turn_of(chain, ((middle, at), (fb, b)), p, (deep - 1, left))
+        let first = self.turn_of(chain, ((fa, a), (middle, at)), p, deep - 1, left);
+        first + self.turn_of(chain, ((middle, at), (fb, b)), p, deep - 1, left)
     }
 }
 

@@ -151,8 +151,8 @@ impl Search<'_> {
         self.touched = self.touched.union(extent);
         self.common.touches.push(extent);
         // A single touch may have many cells where parameters crowd, at a pole.
-        let enclosure = self.touched.diagonal() > self.long;
-        if self.common.touches.len() > if enclosure { MOST_TOUCHES } else { MOST_PAIRS / 4 } { Err(Stopped::Along(at)) } else { Ok(()) }
+        let is_long = self.touched.diagonal() > self.long;
+        if self.common.touches.len() > if is_long { MOST_TOUCHES } else { MOST_PAIRS / 4 } { Err(Stopped::Along(at)) } else { Ok(()) }
     }
 }
 

@@ -17,7 +17,7 @@ use crate::surface::data::kind::Domain;
 use crate::surface::intersect::curve_patch::{Contact, Touch, contacts};
 use crate::surface::intersect::sheet::{Patch, Sheet, grounded, patches};
 use crate::surface::rails::side::Side;
-use crate::surface::trims::holes::with_loops;
+use crate::surface::trims::trim::with_loops;
 
 /// A meeting of a curve and a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]

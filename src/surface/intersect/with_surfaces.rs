@@ -23,7 +23,7 @@ use crate::surface::intersect::pair::Pair;
 use crate::surface::intersect::patch_pair::{Stopped, common};
 use crate::surface::intersect::sheet::{Sheet, patches, widely_grounded};
 use crate::surface::intersect::with_curve::{kept_stretches, long};
-use crate::surface::trims::holes::with_loops;
+use crate::surface::trims::trim::with_loops;
 
 /// What two sets of surfaces have in common.
 #[derive(Clone, Debug, Default)]

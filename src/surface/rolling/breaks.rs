@@ -32,7 +32,7 @@ pub(crate) fn with_breaks(ball: &Ball, radius: f64, stations: &[Station]) -> Vec
         let mut lines = Vec::new();
         for (face, breaks) in breaks.iter().enumerate() {
             for (axis, breaks) in breaks.iter().enumerate() {
-                lines.extend(crossed(ball, pair, (face, axis), breaks));
+                lines.extend(crossed(ball, pair, face, axis, breaks));
             }
         }
         lines.sort_by(|x, y| x.share.total_cmp(&y.share));
@@ -81,7 +81,7 @@ fn step(ball: &Ball, pair: &[Station], face: usize) -> DVec2 {
 }
 
 /// The breaks of one direction between two stations.
-fn crossed(ball: &Ball, pair: &[Station], (face, axis): (usize, usize), breaks: &[f64]) -> Vec<Line> {
+fn crossed(ball: &Ball, pair: &[Station], face: usize, axis: usize, breaks: &[f64]) -> Vec<Line> {
     let (from, d) = (pair[0].uv[face][axis], step(ball, pair, face)[axis]);
     let first = if ball.faces[face].is_closed(axis) { from.min(from + d).floor() } else { 0.0 };
     let all = [0.0, 1.0].into_iter().flat_map(|turn| breaks.iter().map(move |at| at + first + turn));

@@ -11,8 +11,8 @@ use crate::surface::faults::NoBlend;
 use crate::surface::offset::boundary::border_chains;
 use crate::surface::rolling::ball::Ball;
 use crate::surface::rolling::ball_surface::Roll;
-use crate::surface::trims::holes::trim;
 use crate::surface::trims::project::{Way, carried};
+use crate::surface::trims::trim::trim;
 
 /// Steps from the middle to an end in which the border is looked for.
 const STEPS: usize = 256;

@@ -53,14 +53,15 @@ pub(crate) fn stations(ball: &Ball, radius: f64, origin: Origin, is_made: impl F
         if low == 0.0 {
             return ball.fault(NoBlend::NoRadius { at });
         }
-        too_large(ball, (radius, low), at, origin)
+        too_large(ball, radius, low, at, origin)
     })
 }
 
 /// E673 for a radius whose balls are found and whose rounding is not, where that of a smaller one is; `at` is where it was lost.
 pub(crate) fn above_made(
     ball: &Ball,
-    (radius, at): (f64, DVec3),
+    radius: f64,
+    at: DVec3,
     origin: Origin,
     is_made: impl Fn(Vec<Station>, f64) -> bool,
 ) -> Option<Fault> {
@@ -73,7 +74,7 @@ pub(crate) fn above_made(
         let middle = 0.5 * (low + high);
         if makes(middle) { low = middle } else { high = middle }
     }
-    Some(too_large(ball, (radius, low), ball.edge.closest(at).1, origin))
+    Some(too_large(ball, radius, low, ball.edge.closest(at).1, origin))
 }
 
 /// The balls of a radius, beyond the ends of an open edge too; where there are none, the place.
@@ -85,7 +86,7 @@ fn all(ball: &Ball, radius: f64) -> std::result::Result<Vec<Station>, DVec3> {
     Ok(all)
 }
 
-fn too_large(ball: &Ball, (radius, largest): (f64, f64), at: DVec3, origin: Origin) -> Fault {
+fn too_large(ball: &Ball, radius: f64, largest: f64, at: DVec3, origin: Origin) -> Fault {
     let (a, b) = (ball.origins[0], ball.origins[1]);
     BlendFault::TooLarge { blend: origin, a, b, radius, largest, at }.into()
 }

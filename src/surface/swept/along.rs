@@ -69,7 +69,7 @@ fn rounded(profile: &Chain, path: &Chain, settings: &Settings, tolerance: &Toler
     way.set_kinks(turned.corners.clone());
     let corners = turned.corners.iter().map(|c| c.0).collect();
     let frame = Frame { turn: turned.turn.clone(), last: legs.last(), corners, cut: false, closed };
-    let surface = along_way(profile, path, (way, &turned.crossings), frame, settings.origin, tolerance);
+    let surface = along_way(profile, path, way, &turned.crossings, frame, settings.origin, tolerance);
     sweeps_area(&surface, profile, tolerance)?;
     let mut notes = folds(&surface, path, &|u| turned.fraction(u), tolerance);
     if let (Some((at, reach)), true) = (turned.inside, notes.is_empty()) {
@@ -139,11 +139,11 @@ struct Frame {
 fn made(profile: &Chain, path: &Chain, frame: Frame, origin: Origin, tolerance: &Tolerance) -> Surface {
     let mut way = Rail::new(path.clone(), Map::identity());
     way.set_kinks(frame.corners.iter().map(|f| (*f, *f)).collect());
-    along_way(profile, path, (way, &[]), frame, origin, tolerance)
+    along_way(profile, path, way, &[], frame, origin, tolerance)
 }
 
 /// `across` are fractions of the profile at which the surface is parted beside its kinks.
-fn along_way(profile: &Chain, path: &Chain, (way, across): (Rail, &[f64]), frame: Frame, origin: Origin, tolerance: &Tolerance) -> Surface {
+fn along_way(profile: &Chain, path: &Chain, way: Rail, across: &[f64], frame: Frame, origin: Origin, tolerance: &Tolerance) -> Surface {
     let (rail, mut kinks) = kinked(profile, tolerance);
     let near = tolerance.point / profile.length();
     kinks.extend(across.iter().copied().filter(|f| kinks.iter().all(|k| (k - f).abs() > near)).collect::<Vec<_>>());

@@ -49,7 +49,7 @@ pub fn no_frame(path: &Chain, (a, b): (f64, f64)) -> Fault {
 }
 
 impl<'a> Legs<'a> {
-    /// Carries a frame along the whole path; a closed path gets what its frame lacks enclosure over its length, then `twist`.
+    /// Carries a frame along the whole path; what the frame of a closed path lacks is distributed along it, then `twist` is added.
     ///
     /// E636 where the path turns back on itself.
     pub fn new(path: &'a Chain, twist: f64, tolerance: &Tolerance) -> Result<Self> {

@@ -66,7 +66,7 @@ impl Given<'_> {
         let returns = made.closed.0 && self.sections.len() == 1;
         let turns = match self.law {
             Law::Synchronized if !all_given => {
-                let both = |s: &Section| [true, false].map(|up| divided.turns(s.on_guides[0], ws, up, (made.closed.0, returns)));
+                let both = |s: &Section| [true, false].map(|up| divided.turns(s.on_guides[0], ws, up, made.closed.0, returns));
                 self.sections.iter().map(both).collect()
             }
             _ => Vec::new(),

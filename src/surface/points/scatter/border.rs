@@ -19,7 +19,7 @@ use crate::surface::faults::SurfaceFault;
 use crate::surface::rails::side::{Border, Side as Edge};
 use crate::surface::rails::trim_curve::{Pcurve, TrimCurve};
 use crate::surface::shapes::height_field::Field;
-use crate::surface::trims::trim::{TrimLoop, assembled};
+use crate::surface::trims::trim_loop::{TrimLoop, assembled};
 
 /// A side of the border: its two points, and the piece that lies along it.
 #[derive(Clone, Copy, Debug)]
@@ -150,7 +150,7 @@ pub fn surface(field: Field, runs: &[Vec<Side>], points: usize, origin: Origin, 
     let mut walk = TrimLoop { borders: Vec::new(), courses: Vec::new(), chains: Vec::new() };
     for (curve, start) in curves.iter().zip(corners) {
         let chain = Chain::of_curve(curve);
-        let pcurve = Pcurve::follow(&base, (&chain, 0.0, 1.0), start, tolerance.point).map_err(|off| {
+        let pcurve = Pcurve::follow(&base, &chain, (0.0, 1.0), start, tolerance.point).map_err(|off| {
             let (off, at) = (off.distance, off.at);
             Fault::from(SurfaceFault::LoopOutsideSurface { of: origin, surface: origin, off, at, tolerance: tolerance.point })
         })?;
