@@ -92,7 +92,7 @@ pub fn closest_points(a: &Chain, b: &Chain) -> (DVec3, DVec3) {
     best
 }
 
-/// Places of the first two of some chains that run over the same stretches, in either direction.
+/// Places of the first two of some chains that run over the same overlaps, in either direction.
 pub fn given_twice(chains: &[Chain], tolerance: &Tolerance) -> Option<(usize, usize)> {
     let ends = |c: &Chain| (c.start(), c.end());
     let same_ends = |a: &Chain, b: &Chain| {
@@ -154,7 +154,7 @@ fn collect(hit: Hit, a: RunOf, b: RunOf, tolerance: &Tolerance, found: &mut Vec<
         Hit::Overlap { a: (ta0, ta1), b: (tb0, tb1) } => {
             let along_a = (run_a.curve.length_at(ta0), run_a.curve.length_at(ta1));
             let along_b = (run_b.curve.length_at(tb0), run_b.curve.length_at(tb1));
-            // Both runs may hold only a part of the shared stretch: share of it from 0 to 1 that each holds.
+            // Both runs may hold only a part of the overlap: share of it from 0 to 1 that each holds.
             let held = |run: &Run, (s0, s1): (f64, f64)| {
                 let (lo, hi) = (run.s0.min(run.s1), run.s0.max(run.s1));
                 let share = |s: f64| (s - s0) / (s1 - s0);
@@ -168,7 +168,7 @@ fn collect(hit: Hit, a: RunOf, b: RunOf, tolerance: &Tolerance, found: &mut Vec<
     }
 }
 
-/// A shared stretch given by arc lengths on both curves; one of no length is a point, one of negative length nothing.
+/// An overlap given by arc lengths on both curves; one of no length is a point, one of negative length nothing.
 fn push_shared(a: RunOf, b: RunOf, (from, to): ((f64, f64), (f64, f64)), tolerance: &Tolerance, found: &mut Vec<Meeting>) {
     let length = to.0 - from.0;
     if length < -tolerance.point {
@@ -195,7 +195,7 @@ fn on_one_curve(a: RunOf, b: RunOf, tolerance: &Tolerance, found: &mut Vec<Meeti
     }
 }
 
-/// Sorted along `a`, stretches joined over joints, each node once.
+/// Sorted along `a`, overlaps joined over joints, each node once.
 fn tidy(a: &Chain, b: &Chain, mut found: Vec<Meeting>, tolerance: &Tolerance) -> Vec<Meeting> {
     let (near_a, near_b) = (tolerance.point / a.length(), tolerance.point / b.length());
     let (closed_a, closed_b) = (a.is_closed(tolerance), b.is_closed(tolerance));
@@ -214,7 +214,7 @@ fn tidy(a: &Chain, b: &Chain, mut found: Vec<Meeting>, tolerance: &Tolerance) ->
         if let Some(last) = out.last_mut()
             && last.shared_to.is_some_and(|(fa, fb)| m.fa <= fa + near_a && (m.shared_to.is_none() || (m.fb - fb).abs() <= near_b))
         {
-            // A point on a stretch adds nothing, a stretch that goes on lengthens it.
+            // A point on an overlap adds nothing, an overlap that goes on lengthens it.
             if let (Some(end), Some(more)) = (&mut last.shared_to, m.shared_to)
                 && more.0 > end.0
             {
@@ -228,7 +228,7 @@ fn tidy(a: &Chain, b: &Chain, mut found: Vec<Meeting>, tolerance: &Tolerance) ->
         if m.shared_to.is_none() && out.iter().rev().take_while(|k| m.fa - k.fa <= REACH * near_a).any(near) {
             continue;
         }
-        // A point where a stretch begins is a part of it.
+        // A point where an overlap begins is a part of it.
         if m.shared_to.is_some() {
             while out.last().is_some_and(near) {
                 out.pop();

@@ -72,15 +72,15 @@ pub(crate) fn fitted(surface: &Surface, line: IsoLine, origin: Origin, tolerance
 
 impl Fit<'_> {
     /// Point and derivatives of the line, from the given side.
-    fn jet(&self, t: f64, lean: OneSided) -> Jet {
+    fn jet(&self, t: f64, side: OneSided) -> Jet {
         let (u, v) = self.line.at(t);
         match self.line {
             IsoLine::U(_) => {
-                let jet = self.surface.jet_one_sided(u, v, (OneSided::After, lean));
+                let jet = self.surface.jet_one_sided(u, v, (OneSided::After, side));
                 Jet { p: jet.p, d1: jet.dv, d2: jet.dvv }
             }
             IsoLine::V(_) => {
-                let jet = self.surface.jet_one_sided(u, v, (lean, OneSided::After));
+                let jet = self.surface.jet_one_sided(u, v, (side, OneSided::After));
                 Jet { p: jet.p, d1: jet.du, d2: jet.duu }
             }
         }

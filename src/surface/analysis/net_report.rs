@@ -88,12 +88,12 @@ impl Surface {
     pub fn net_curves(&self) -> Vec<NetCurve> {
         let Some(blend) = self.blend() else { return Vec::new() };
         let (u, v) = blend.axes();
-        let lean = (OneSided::After, OneSided::After);
+        let side = (OneSided::After, OneSided::After);
         let place = |k: usize| k as f64 / PLACES as f64;
         let row = |rail: &Rail, at: f64, along_u: bool| {
             let chain = rail.chain();
             let origin = chain.map_or(self.origin(), |chain| chain.origin());
-            let jet = |x: f64| if along_u { blend.jet(x, at, lean) } else { blend.jet(at, x, lean) };
+            let jet = |x: f64| if along_u { blend.jet(x, at, side) } else { blend.jet(at, x, side) };
             let mut breaks = Vec::new();
             rail.breaks(&mut breaks);
             let inner = |x: &f64| *x > NUDGE && *x < 1.0 - NUDGE;

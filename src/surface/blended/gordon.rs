@@ -108,13 +108,13 @@ impl Surface {
                 }
             }
         }
-        let lean = (OneSided::After, OneSided::After);
+        let side = (OneSided::After, OneSided::After);
         for x in (0..=COMPARED).map(|k| k as f64 / COMPARED as f64) {
             for (rail, &y) in blend.along_u().iter().zip(&v.nodes) {
-                check.residual = check.residual.max(blend.jet(x, y, lean).p.distance(rail.point(x)));
+                check.residual = check.residual.max(blend.jet(x, y, side).p.distance(rail.point(x)));
             }
             for (rail, &y) in blend.along_v().iter().zip(&u.nodes) {
-                check.residual = check.residual.max(blend.jet(y, x, lean).p.distance(rail.point(x)));
+                check.residual = check.residual.max(blend.jet(y, x, side).p.distance(rail.point(x)));
             }
             // Off the nodes, where no curve decides.
             let inner = (x * (1.0 - NUDGE)).max(NUDGE);
@@ -128,10 +128,10 @@ impl Surface {
                 let chained = || rails.iter().filter(|rail| rail.chain().is_some());
                 let seam = (closed && !chained().any(corner)).then_some((1.0, 0.0));
                 for (a, b) in smooth.map(|x| (*x, *x)).chain(seam) {
-                    let normal = |at: f64, lean: OneSided| {
+                    let normal = |at: f64, side: OneSided| {
                         unit_normal(&match across_u {
-                            true => blend.jet(at, inner, (lean, OneSided::After)),
-                            false => blend.jet(inner, at, (OneSided::After, lean)),
+                            true => blend.jet(at, inner, (side, OneSided::After)),
+                            false => blend.jet(inner, at, (OneSided::After, side)),
                         })
                     };
                     if let (Some(before), Some(after)) = (normal(a, OneSided::Before), normal(b, OneSided::After)) {

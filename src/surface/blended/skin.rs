@@ -135,7 +135,7 @@ fn turned_back(surface: &Surface) -> Option<Fault> {
     const PLACES: usize = 8;
     let (_, vs) = surface.kinks();
     let turn = |v: f64, u: f64| {
-        let [a, b] = [OneSided::Before, OneSided::After].map(|lean| surface.jet_one_sided(u, v, (OneSided::After, lean)).dv);
+        let [a, b] = [OneSided::Before, OneSided::After].map(|side| surface.jet_one_sided(u, v, (OneSided::After, side)).dv);
         math::angle_between(a, b)
     };
     vs.iter().find_map(|&v| {

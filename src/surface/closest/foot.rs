@@ -172,8 +172,8 @@ impl Evaluator<'_> {
         let surface = self.surface();
         let Side::Chain { chain, .. } = surface.side(k) else { return None };
         let p = chain.point(fraction);
-        let course = surface.parts().trim.as_ref().and_then(|trim| trim.courses.get(k));
-        match course {
+        let trim_curve = surface.parts().trim.as_ref().and_then(|trim| trim.trim_curves.get(k));
+        match trim_curve {
             _ if surface.is_flat() => surface.flat_uv(p),
             Some(TrimCurve::Line(a, b)) => {
                 let t = surface.side_parameter(k, fraction);

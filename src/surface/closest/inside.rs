@@ -48,7 +48,7 @@ impl Surface {
     pub fn holds(&self, u: f64, v: f64) -> bool {
         let Some(trim) = &self.parts().trim else { return true };
         self.copies((u, v)).into_iter().any(|p| {
-            let turns: f64 = trim.courses.iter().enumerate().map(|(k, course)| self.turning(k, course, p)).sum();
+            let turns: f64 = trim.trim_curves.iter().enumerate().map(|(k, trim_curve)| self.turning(k, trim_curve, p)).sum();
             turns > std::f64::consts::PI
         })
     }
@@ -63,16 +63,16 @@ impl Surface {
     }
 
     /// The angle by which border `k` turns about a place.
-    fn turning(&self, k: usize, course: &TrimCurve, p: DVec2) -> f64 {
+    fn turning(&self, k: usize, trim_curve: &TrimCurve, p: DVec2) -> f64 {
         match self.side(k) {
-            Side::Chain { chain, .. } => self.turn_along(course, Some(&chain), p),
-            _ => self.turn_along(course, None, p),
+            Side::Chain { chain, .. } => self.turn_along(trim_curve, Some(&chain), p),
+            _ => self.turn_along(trim_curve, None, p),
         }
     }
 
     /// The angle by which a way over the surface turns about a place; the chain is the one whose feet it has.
-    pub(crate) fn turn_along(&self, course: &TrimCurve, chain: Option<&Chain>, p: DVec2) -> f64 {
-        match course {
+    pub(crate) fn turn_along(&self, trim_curve: &TrimCurve, chain: Option<&Chain>, p: DVec2) -> f64 {
+        match trim_curve {
             TrimCurve::Line(a, b) => angle(DVec2::from(*a), DVec2::from(*b), p),
             TrimCurve::Pcurve(pcurve) => {
                 let Some(chain) = chain else { return 0.0 };

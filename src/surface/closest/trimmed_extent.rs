@@ -75,7 +75,7 @@ impl Border {
 
 /// A box in (u, v) about what a border runs through: about its places, and farther by the longest step between them.
 fn course_box(surface: &Surface, k: usize) -> (DVec2, DVec2) {
-    let places = surface.parts().trim.as_ref().map_or_else(Vec::new, |trim| trim.courses[k].places());
+    let places = surface.parts().trim.as_ref().map_or_else(Vec::new, |trim| trim.trim_curves[k].places());
     let step = places.windows(2).map(|w| w[0].distance(w[1])).fold(0.0, f64::max);
     let low = places.iter().copied().fold(DVec2::INFINITY, DVec2::min);
     let high = places.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);

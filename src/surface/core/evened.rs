@@ -30,7 +30,7 @@ impl Evened {
         }
         let speed_map = |in_u: bool, closed: bool| if closed { None } else { net.speed_map(in_u) };
         let speed_maps = [speed_map(true, parts.closed.0), speed_map(false, parts.closed.1)];
-        if speed_maps.iter().all(Option::is_none) || !trim.courses.iter().all(TrimCurve::is_upright) {
+        if speed_maps.iter().all(Option::is_none) || !trim.trim_curves.iter().all(TrimCurve::is_upright) {
             return None;
         }
         let mut shape = net.clone();
@@ -40,7 +40,7 @@ impl Evened {
             }
         }
         let mut evened = Self { surface: surface.clone(), speed_maps, flipped: parts.flipped };
-        let trim = Arc::new(trim.with_courses(trim.courses.iter().map(|c| c.mapped(&|at| evened.place(at))).collect()));
+        let trim = Arc::new(trim.with_courses(trim.trim_curves.iter().map(|c| c.mapped(&|at| evened.place(at))).collect()));
         evened.surface = surface.remade(Parts { shape: Shape::Nurbs(shape), trim: Some(trim), ..parts.clone() });
         Some(evened)
     }

@@ -10,7 +10,7 @@ use crate::base::math;
 use crate::base::range::Interval;
 use crate::base::tolerance::EPSILON;
 use crate::geometry::Motion;
-use crate::surface::core::joined_piece::{Leans, Piece, foot};
+use crate::surface::core::joined_piece::{Piece, Sides, foot};
 use crate::surface::core::surface::Surface;
 use crate::surface::data::breaks::tidy;
 use crate::surface::data::enclosure::Enclosure;
@@ -74,8 +74,8 @@ impl Joined {
     /// Jets on both sides of the seam before piece k at a y of all.
     pub fn beside(&self, k: usize, y: f64) -> (Jet2, Jet2) {
         let x = self.stops[k];
-        let side = |lean: OneSided| self.xy_jet(x, y, (lean, OneSided::After));
-        (side(OneSided::Before), side(OneSided::After))
+        let jet = |side: OneSided| self.xy_jet(x, y, (side, OneSided::After));
+        (jet(OneSided::Before), jet(OneSided::After))
     }
 
     /// Whether first derivatives across the seam before piece k are the same on both sides.
@@ -90,7 +90,7 @@ impl Joined {
     fn is_even_along(&self, y: f64) -> bool {
         (0..=PLACES).step_by(4).all(|n| {
             let x = n as f64 / PLACES as f64;
-            let [a, b] = [OneSided::Before, OneSided::After].map(|lean| self.xy_jet(x, y, (OneSided::After, lean)).dv);
+            let [a, b] = [OneSided::Before, OneSided::After].map(|side| self.xy_jet(x, y, (OneSided::After, side)).dv);
             a.distance(b) <= EPSILON * PLACES as f64 * (a.length() + b.length())
         })
     }
@@ -98,8 +98,8 @@ impl Joined {
     /// The y of piece k at even steps of the y of the one before; empty where they agree.
     fn table(&self, k: usize) -> Vec<f64> {
         let (a, b) = (&self.pieces[k - 1], &self.pieces[k]);
-        let leans = (OneSided::After, OneSided::After);
-        let point = |piece: &Piece, x: f64, y: f64| piece.jet(x, y, leans).p;
+        let sides = (OneSided::After, OneSided::After);
+        let point = |piece: &Piece, x: f64, y: f64| piece.jet(x, y, sides).p;
         let grid: Vec<DVec3> = (0..=4 * PLACES).map(|n| point(b, 0.0, n as f64 / (4 * PLACES) as f64)).collect();
         let mut from = 0;
         let mut table = Vec::with_capacity(PLACES + 1);
@@ -119,7 +119,7 @@ impl Joined {
     }
 
     /// y of piece k and its two derivatives at a y of all.
-    fn own(&self, k: usize, y: f64, lean: OneSided) -> [f64; 3] {
+    fn own(&self, k: usize, y: f64, side: OneSided) -> [f64; 3] {
         let mut at = [y, 1.0, 0.0];
         for n in 1..=k {
             let (a, b) = (&self.pieces[n - 1], &self.pieces[n]);
@@ -127,7 +127,7 @@ impl Joined {
                 continue;
             }
             let w = Self::next(a, b, at[0]);
-            let (from, to) = (a.jet(1.0, at[0], (OneSided::Before, lean)), b.jet(0.0, w, (OneSided::After, lean)));
+            let (from, to) = (a.jet(1.0, at[0], (OneSided::Before, side)), b.jet(0.0, w, (OneSided::After, side)));
             let square = to.dv.length_squared();
             if square <= 0.0 {
                 at = [w, at[1], 0.0];
@@ -165,20 +165,20 @@ impl Joined {
     }
 
     /// The piece at an x, and its own x.
-    fn at(&self, x: f64, lean: OneSided) -> (usize, f64) {
+    fn at(&self, x: f64, side: OneSided) -> (usize, f64) {
         let last = self.pieces.len() - 1;
         let inner = &self.stops[1..=last];
-        let k = inner.partition_point(|s| if lean == OneSided::Before { *s < x - EPSILON } else { *s <= x + EPSILON });
+        let k = inner.partition_point(|s| if side == OneSided::Before { *s < x - EPSILON } else { *s <= x + EPSILON });
         let (low, high) = (self.stops[k], self.stops[k + 1]);
         // From the nearer end, so that both are met exactly.
         let share = if x - low <= high - x { (x - low) / (high - low) } else { 1.0 - (high - x) / (high - low) };
         (k, if share.abs() <= EPSILON { 0.0 } else { share })
     }
 
-    fn xy_jet(&self, x: f64, y: f64, leans: Leans) -> Jet2 {
-        let (k, x) = self.at(x, leans.0);
-        let [w, slope, bend] = self.own(k, y, leans.1);
-        let jet = self.pieces[k].jet(x, w, leans);
+    fn xy_jet(&self, x: f64, y: f64, sides: Sides) -> Jet2 {
+        let (k, x) = self.at(x, sides.0);
+        let [w, slope, bend] = self.own(k, y, sides.1);
+        let jet = self.pieces[k].jet(x, w, sides);
         let s = 1.0 / (self.stops[k + 1] - self.stops[k]);
         Jet2 {
             p: jet.p,
@@ -195,8 +195,8 @@ impl Joined {
     }
 
     /// Point and derivatives.
-    pub fn jet(&self, u: f64, v: f64, leans: Leans) -> Jet2 {
-        if self.across_v { Self::swapped(self.xy_jet(v, u, (leans.1, leans.0))) } else { self.xy_jet(u, v, leans) }
+    pub fn jet(&self, u: f64, v: f64, sides: Sides) -> Jet2 {
+        if self.across_v { Self::swapped(self.xy_jet(v, u, (sides.1, sides.0))) } else { self.xy_jet(u, v, sides) }
     }
 
     /// Where the formula changes along u or v, and whether first derivatives may jump there.
@@ -212,8 +212,8 @@ impl Joined {
 
     /// How normals turn at most over a line of constant y.
     pub fn fold_at(&self, y: f64) -> f64 {
-        let normal = |x: f64, lean: OneSided| {
-            let jet = self.xy_jet(x, y, (OneSided::After, lean));
+        let normal = |x: f64, side: OneSided| {
+            let jet = self.xy_jet(x, y, (OneSided::After, side));
             jet.du.cross(jet.dv).normalize_or_zero()
         };
         let at = |n: usize| (n as f64 + 0.5) / PLACES as f64;

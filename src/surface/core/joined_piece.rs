@@ -14,7 +14,7 @@ use crate::surface::data::one_sided::OneSided;
 /// Newton steps.
 const STEPS: usize = 16;
 
-pub(super) type Leans = (OneSided, OneSided);
+pub(super) type Sides = (OneSided, OneSided);
 
 /// How the unit square of a surface lies in that of x and y.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -44,8 +44,8 @@ impl Turn {
         if self.swap { (y, x) } else { (x, y) }
     }
 
-    fn leans(self, (x, y): Leans) -> Leans {
-        let turned = |lean: OneSided, back: bool| if back { lean.turned() } else { lean };
+    fn sides(self, (x, y): Sides) -> Sides {
+        let turned = |side: OneSided, back: bool| if back { side.turned() } else { side };
         let (x, y) = (turned(x, self.back_x), turned(y, self.back_y));
         if self.swap { (y, x) } else { (x, y) }
     }
@@ -109,25 +109,25 @@ impl Piece {
         (self.shift > 0.0).then_some(1.0 - self.shift)
     }
 
-    /// Its own y, turned, at a y, on the side to which the lean points at its seam.
-    fn around(&self, y: f64, lean: OneSided) -> f64 {
+    /// Its own y, turned, at a y; at its seam the one on a side of it.
+    fn around(&self, y: f64, side: OneSided) -> f64 {
         let Some(seam) = self.seam() else { return y };
-        if y > seam || y == seam && lean == OneSided::After { y - seam } else { y + self.shift }
+        if y > seam || y == seam && side == OneSided::After { y - seam } else { y + self.shift }
     }
 
     /// Point and derivatives with respect to its own x and y.
-    pub fn jet(&self, x: f64, y: f64, leans: Leans) -> Jet2 {
+    pub fn jet(&self, x: f64, y: f64, sides: Sides) -> Jet2 {
         // At its ends, which may be inside the surface, it is known from inside.
-        let lean = if y >= 1.0 {
+        let side = if y >= 1.0 {
             OneSided::Before
         } else if y <= 0.0 {
             OneSided::After
         } else {
-            leans.1
+            sides.1
         };
-        let (y, leans) = (self.around(y, lean), (leans.0, lean));
+        let (y, sides) = (self.around(y, side), (sides.0, side));
         let (u, v) = self.turn.place(x, y);
-        self.turn.jet(self.surface.jet_one_sided(u, v, self.turn.leans(leans)))
+        self.turn.jet(self.surface.jet_one_sided(u, v, self.turn.sides(sides)))
     }
 
     /// Bounds over a rectangle whose y has the seam beside it at most.

@@ -12,12 +12,12 @@ use crate::surface::rails::side::Side;
 impl Surface {
     /// Unit normal `du × dv`; at a pole the limit; zero only where the surface is singular.
     pub fn normal(&self, u: f64, v: f64) -> DVec3 {
-        self.normal_lean(u, v, (OneSided::After, OneSided::After))
+        self.normal_one_sided(u, v, (OneSided::After, OneSided::After))
     }
 
     /// Unit normal of the smooth piece on the given side, see [`Surface::jet_one_sided`].
-    pub fn normal_lean(&self, u: f64, v: f64, lean: (OneSided, OneSided)) -> DVec3 {
-        let jet = self.jet_one_sided(u, v, lean);
+    pub fn normal_one_sided(&self, u: f64, v: f64, side: (OneSided, OneSided)) -> DVec3 {
+        let jet = self.jet_one_sided(u, v, side);
         if let Some(normal) = unit_normal(&jet) {
             return normal;
         }
@@ -38,9 +38,9 @@ impl Surface {
         };
         let inward = |along: f64| {
             let (u, v) = place(along, 0.0);
-            let lean =
+            let side =
                 (if u == 1.0 { OneSided::Before } else { OneSided::After }, if v == 1.0 { OneSided::Before } else { OneSided::After });
-            let jet = self.jet_one_sided(u, v, lean);
+            let jet = self.jet_one_sided(u, v, side);
             [jet.dv, -jet.du, -jet.dv, jet.du][k]
         };
         const SAMPLES: u32 = 16;

@@ -59,17 +59,17 @@ impl StableHash for Shape {
 
 impl Shape {
     /// Point and derivatives, from the given sides where they jump.
-    pub fn jet(&self, u: f64, v: f64, lean: (OneSided, OneSided)) -> Jet2 {
+    pub fn jet(&self, u: f64, v: f64, side: (OneSided, OneSided)) -> Jet2 {
         work::spend(1);
         match self {
-            Self::Blend(s) => s.jet(u, v, lean),
+            Self::Blend(s) => s.jet(u, v, side),
             Self::Trilateral(s) => s.jet(u, v),
-            Self::Sweep(s) => s.jet(u, v, lean),
+            Self::Sweep(s) => s.jet(u, v, side),
             Self::Plane(s) => s.jet(u, v),
-            Self::Nurbs(s) => s.jet(u, v, lean),
-            Self::Framed(s) => s.jet(u, v, lean),
+            Self::Nurbs(s) => s.jet(u, v, side),
+            Self::Framed(s) => s.jet(u, v, side),
             Self::Scatter(s) => s.jet(u, v),
-            Self::Joined(s) => s.jet(u, v, lean),
+            Self::Joined(s) => s.jet(u, v, side),
         }
     }
 
@@ -107,8 +107,8 @@ impl Shape {
             Self::Sweep(s) => s.jets(us, vs, out),
             Self::Framed(s) => s.jets(us, vs, out),
             _ => {
-                for &(v, lean_v) in vs {
-                    out.extend(us.iter().map(|&(u, lean_u)| self.jet(u, v, (lean_u, lean_v))));
+                for &(v, side_v) in vs {
+                    out.extend(us.iter().map(|&(u, side_u)| self.jet(u, v, (side_u, side_v))));
                 }
             }
         }

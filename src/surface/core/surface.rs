@@ -53,7 +53,7 @@ pub(crate) struct Parts {
     pub kinks: (Vec<f64>, Vec<f64>),
     pub chains: Vec<Chain>,
     pub generated: Vec<Chain>,
-    /// Loops and courses of a trimmed surface.
+    /// Loops and trim curves of a trimmed surface.
     pub trim: Option<Arc<Trim>>,
     /// The shape is read with v backwards (a triangle: with u and v exchanged).
     pub flipped: bool,
@@ -186,10 +186,10 @@ impl Surface {
 
     /// Point and derivatives of the smooth piece on the given side in u (first) and v (second): on the border of a
     /// patch the side where the patch lies.
-    pub fn jet_one_sided(&self, u: f64, v: f64, lean: (OneSided, OneSided)) -> Jet2 {
+    pub fn jet_one_sided(&self, u: f64, v: f64, side: (OneSided, OneSided)) -> Jet2 {
         let (u, v) = self.wrapped(u, v);
-        let (u, v, lean) = self.inner(u, v, lean);
-        self.outer(self.0.parts.shape.jet(u, v, lean))
+        let (u, v, side) = self.inner(u, v, side);
+        self.outer(self.0.parts.shape.jet(u, v, side))
     }
 
     /// Into 0…1 where a surface closes: borders may run over the seam. What rounding put beside a seam stays on its side.
@@ -199,11 +199,11 @@ impl Surface {
     }
 
     /// From this surface's parameters to the shape's.
-    pub(crate) fn inner(&self, u: f64, v: f64, lean: (OneSided, OneSided)) -> (f64, f64, (OneSided, OneSided)) {
+    pub(crate) fn inner(&self, u: f64, v: f64, side: (OneSided, OneSided)) -> (f64, f64, (OneSided, OneSided)) {
         match (self.0.parts.flipped, self.ground()) {
-            (false, _) => (u, v, lean),
-            (true, Domain::Triangle) => (v, u, (lean.1, lean.0)),
-            (true, _) => (u, 1.0 - v, (lean.0, lean.1.turned())),
+            (false, _) => (u, v, side),
+            (true, Domain::Triangle) => (v, u, (side.1, side.0)),
+            (true, _) => (u, 1.0 - v, (side.0, side.1.turned())),
         }
     }
 
@@ -245,11 +245,11 @@ impl Surface {
     pub fn jets(&self, us: &[(f64, OneSided)], vs: &[(f64, OneSided)]) -> Vec<Jet2> {
         let mut out = Vec::with_capacity(us.len() * vs.len());
         if self.0.parts.flipped && self.ground() == Domain::Triangle {
-            for &(v, lean_v) in vs {
-                out.extend(us.iter().map(|&(u, lean_u)| self.jet_one_sided(u, v, (lean_u, lean_v))));
+            for &(v, side_v) in vs {
+                out.extend(us.iter().map(|&(u, side_u)| self.jet_one_sided(u, v, (side_u, side_v))));
             }
         } else if self.0.parts.flipped {
-            let turned: Vec<(f64, OneSided)> = vs.iter().map(|(v, lean)| (1.0 - v, lean.turned())).collect();
+            let turned: Vec<(f64, OneSided)> = vs.iter().map(|(v, side)| (1.0 - v, side.turned())).collect();
             self.0.parts.shape.jets(us, &turned, &mut out);
             out.iter_mut().for_each(|jet| *jet = self.outer(*jet));
         } else {

@@ -57,16 +57,16 @@ impl Search<'_> {
             samples.push(best);
         }
         let common = |t: f64| section.to_common(t);
-        let stretch = longest(&samples, |s| s.gap <= self.point);
-        if let Some((i, j)) = stretch {
+        let overlap = longest(&samples, |s| s.gap <= self.point);
+        if let Some((i, j)) = overlap {
             let ended = |s: &Sample| view.at_end(s.t) || self.at_border(s.uv);
             let length = (i..j).map(|k| samples[k].p.distance(samples[k + 1].p)).sum::<f64>();
             let close = longest(&samples, |s| s.gap <= 0.5 * self.point);
             let lies = close.is_some_and(|(i, j)| (i..j).map(|k| samples[k].p.distance(samples[k + 1].p)).sum::<f64>() > self.long);
             let whole = ended(&samples[i]) && ended(&samples[j]) && length > 4.0 * self.point && (j - i) > 2;
             if lies || whole && self.is_flat_run(&samples[i..=j]) {
-                let (from, to) = (self.stretch_end(&view, &samples, i, true), self.stretch_end(&view, &samples, j, false));
-                out.push(Contact::Stretch { t: (common(from), common(to)) });
+                let (from, to) = (self.overlap_end(&view, &samples, i, true), self.overlap_end(&view, &samples, j, false));
+                out.push(Contact::Overlap { t: (common(from), common(to)) });
                 self.found.retain(|(s, touch)| *s != run.section || touch.t < from || touch.t > to);
                 return;
             }
@@ -74,8 +74,8 @@ impl Search<'_> {
         self.points(&view, run, &samples);
     }
 
-    /// Where a stretch that lies on the surface ends beyond its last sample: there the gap begins to grow.
-    fn stretch_end(&self, view: &View, samples: &[Sample], k: usize, first: bool) -> f64 {
+    /// Where an overlap that lies on the surface ends beyond its last sample: there the gap begins to grow.
+    fn overlap_end(&self, view: &View, samples: &[Sample], k: usize, first: bool) -> f64 {
         const ROUNDS: usize = 60;
         const EXACT: f64 = 64.0;
         let beyond = if first { k.checked_sub(1) } else { Some(k + 1).filter(|k| *k < samples.len()) };

@@ -2,7 +2,7 @@
 //!
 //! A pair of a part of the curve and a cell is dropped when they are further apart than the tolerance. Where no tangent of
 //! the part can lie in a tangent plane of the cell there is at most one meeting, and Newton's method finds it. What runs
-//! along the surface is collected, part by part, and worked out at the end: touches, meetings close together, stretches.
+//! along the surface is collected, part by part, and worked out at the end: touches, meetings close together, overlaps.
 
 use glam::{DVec2, DVec3};
 
@@ -28,7 +28,7 @@ const MOST_NEAR: usize = 1 << 14;
 pub(crate) enum Contact {
     Point(Touch),
     /// The curve runs within the tolerance of the surface between two parameters.
-    Stretch {
+    Overlap {
         t: (f64, f64),
     },
 }

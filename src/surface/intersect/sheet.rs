@@ -39,8 +39,8 @@ impl Patch {
 impl Footing for Patch {
     /// Point and derivatives from inside the patch.
     fn jet(&self, uv: DVec2) -> Jet2 {
-        let lean = |x: f64, high: f64| if x >= high { OneSided::Before } else { OneSided::After };
-        self.surface.jet_one_sided(uv.x, uv.y, (lean(uv.x, self.u.1), lean(uv.y, self.v.1)))
+        let side = |x: f64, high: f64| if x >= high { OneSided::Before } else { OneSided::After };
+        self.surface.jet_one_sided(uv.x, uv.y, (side(uv.x, self.u.1), side(uv.y, self.v.1)))
     }
 
     /// The nearest place of the patch.

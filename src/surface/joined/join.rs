@@ -135,8 +135,8 @@ fn apart(all: &[Surface], rims: &[Vec<Rim>], seen: &[usize]) -> Fault {
 /// The mean length of lines along x.
 fn length(piece: &Piece) -> f64 {
     let rule = gauss_legendre(ORDER);
-    let leans = (OneSided::After, OneSided::After);
-    let line = |y: f64| rule.iter().map(|(x, w)| 0.5 * w * piece.jet(0.5 + 0.5 * x, y, leans).du.length()).sum::<f64>();
+    let sides = (OneSided::After, OneSided::After);
+    let line = |y: f64| rule.iter().map(|(x, w)| 0.5 * w * piece.jet(0.5 + 0.5 * x, y, sides).du.length()).sum::<f64>();
     (0..LINES).map(|k| line((k as f64 + 0.5) / LINES as f64)).sum::<f64>() / LINES as f64
 }
 

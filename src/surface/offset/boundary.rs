@@ -33,8 +33,8 @@ const STEP: f64 = NUDGE;
 pub struct Boundary {
     surface: Surface,
     side: Side,
-    course: TrimCurve,
-    /// The part of the course that it is; of a closed one it may run on beyond 1.
+    trim_curve: TrimCurve,
+    /// The part of the trim curve that it is; of a closed one it may run on beyond 1.
     part: (f64, f64),
 }
 
@@ -109,7 +109,7 @@ pub(crate) fn border_chains(surface: &Surface, tolerance: &Tolerance) -> Result<
 /// Which borders of a loop are seams across which the face goes on: its loop runs along both sides of them.
 fn seams(surface: &Surface, below: &Surface, walk: &TrimLoop) -> Vec<bool> {
     let closed = surface.closed();
-    let on_seam = |k: usize| !matches!(walk.borders[k].side, Side::Pole(_)) && walk.courses[k].is_seam(closed);
+    let on_seam = |k: usize| !matches!(walk.borders[k].side, Side::Pole(_)) && walk.trim_curves[k].is_seam(closed);
     let middle = |k: usize| Boundary::of(below, walk, k).jet(0.5, false).map(|jet| jet.p);
     let near = |j: usize, k: usize| {
         let apart = middle(j).zip(middle(k)).map(|(a, b)| a.distance(b));
@@ -123,12 +123,12 @@ fn seams(surface: &Surface, below: &Surface, walk: &TrimLoop) -> Vec<bool> {
 impl Boundary {
     /// Border `k` of a loop of the face over a surface.
     fn of(below: &Surface, walk: &TrimLoop, k: usize) -> Self {
-        Self { surface: below.clone(), side: walk.borders[k].side.clone(), course: walk.courses[k].clone(), part: (0.0, 1.0) }
+        Self { surface: below.clone(), side: walk.borders[k].side.clone(), trim_curve: walk.trim_curves[k].clone(), part: (0.0, 1.0) }
     }
 
     /// Parameters along the border, ends included, between which it has no corner.
     pub fn stops(&self) -> Vec<f64> {
-        let inner: Vec<f64> = match (&self.course, &self.side) {
+        let inner: Vec<f64> = match (&self.trim_curve, &self.side) {
             (TrimCurve::Pcurve(pcurve), Side::Chain { chain, .. }) => {
                 let (from, to) = (pcurve.fraction(0.0), pcurve.fraction(1.0));
                 chain_breaks(chain).into_iter().map(|f| (f - from) / (to - from)).collect()
@@ -152,11 +152,11 @@ impl Boundary {
     /// The place at a parameter from 0 to 1; `before`: of the piece that ends there. `None` where nothing is known of it.
     pub fn jet(&self, t: f64, before: bool) -> Option<BoundaryJet> {
         let (uv, p, d1, way) = self.place(t, before)?;
-        let lean = |x: f64| if x < 0.0 { OneSided::Before } else { OneSided::After };
+        let side = |x: f64| if x < 0.0 { OneSided::Before } else { OneSided::After };
         let way = if before { -way } else { way };
-        let leans = (lean(way.x), lean(way.y));
-        let normal = self.surface.normal_lean(uv.x, uv.y, leans);
-        let jet = self.surface.jet_one_sided(uv.x, uv.y, leans);
+        let sides = (side(way.x), side(way.y));
+        let normal = self.surface.normal_one_sided(uv.x, uv.y, sides);
+        let jet = self.surface.jet_one_sided(uv.x, uv.y, sides);
         let along = if before { -way } else { way };
         let turn = match slopes(&jet) {
             Some((nu, nv)) if normal.length_squared() > 0.0 => nu * along.x + nv * along.y,
@@ -189,7 +189,7 @@ impl Boundary {
     /// The point of [`Boundary::jet`] by itself: its foot and the normal there are many times the work.
     pub fn point(&self, t: f64) -> Option<DVec3> {
         let t = self.of_whole(t, false);
-        match (&self.course, &self.side) {
+        match (&self.trim_curve, &self.side) {
             (TrimCurve::Pcurve(pcurve), Side::Chain { chain, .. }) => {
                 let (f, onwards) = (pcurve.fraction(t), pcurve.fraction(1.0) > pcurve.fraction(0.0));
                 Some(if onwards { chain.jet(f).p } else { chain.jet_before(f).p })
@@ -215,7 +215,7 @@ impl Boundary {
 
     /// The same by the parameter of the whole border.
     fn whole_place(&self, t: f64, before: bool) -> Option<(DVec2, DVec3, DVec3, DVec2)> {
-        match (&self.course, &self.side) {
+        match (&self.trim_curve, &self.side) {
             (TrimCurve::Line(a, b), _) => {
                 let (a, b) = (DVec2::from(*a), DVec2::from(*b));
                 let (uv, way) = (a.lerp(b, t), b - a);

@@ -74,9 +74,9 @@ impl Carrier<'_> {
     }
 
     fn walk(&self, walk: &TrimLoop, copies: &[Option<Chain>]) -> Result<TrimLoop> {
-        let mut made = TrimLoop { borders: Vec::new(), courses: Vec::new(), chains: Vec::new() };
-        for ((border, course), copy) in walk.borders.iter().zip(&walk.courses).zip(copies) {
-            let places = course.places();
+        let mut made = TrimLoop { borders: Vec::new(), trim_curves: Vec::new(), chains: Vec::new() };
+        for ((border, trim_curve), copy) in walk.borders.iter().zip(&walk.trim_curves).zip(copies) {
+            let places = trim_curve.places();
             let (first, last) = (places[0], places[places.len() - 1]);
             let Some(chain) = copy else {
                 let (a, b) = (self.place(first), self.place(last));
@@ -85,7 +85,7 @@ impl Carrier<'_> {
                     _ => Side::Seam,
                 };
                 made.borders.push(Border::straight(side));
-                made.courses.push(TrimCurve::Line(a.into(), b.into()));
+                made.trim_curves.push(TrimCurve::Line(a.into(), b.into()));
                 continue;
             };
             let pcurve = Pcurve::follow(self.ground, chain, (0.0, 1.0), self.place(first), self.tolerance.point).map_err(|off| {
@@ -93,7 +93,7 @@ impl Carrier<'_> {
                 SurfaceFault::LoopOutsideSurface { of, surface, off: off.distance, at: off.at, tolerance: self.tolerance.point }
             })?;
             made.chains.push(chain.clone());
-            made.courses.push(TrimCurve::Pcurve(Arc::new(pcurve.into_poles(self.ground, chain))));
+            made.trim_curves.push(TrimCurve::Pcurve(Arc::new(pcurve.into_poles(self.ground, chain))));
             made.borders.push(Border::chain(chain.clone(), false));
         }
         Ok(made)

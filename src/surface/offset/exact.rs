@@ -53,8 +53,8 @@ fn crease(surface: &Surface, tolerance: &Tolerance) -> Option<(DVec3, f64)> {
     let in_u = us.iter().flat_map(|u| places().map(move |v| (*u, v, true)));
     let in_v = vs.iter().flat_map(|v| places().map(move |u| (u, *v, false)));
     let jump = |(u, v, across_u): (f64, f64, bool)| {
-        let lean = |side: OneSided| if across_u { (side, OneSided::After) } else { (OneSided::After, side) };
-        let normal = |side: OneSided| surface.normal_lean(u, v, lean(side));
+        let sides = |side: OneSided| if across_u { (side, OneSided::After) } else { (OneSided::After, side) };
+        let normal = |side: OneSided| surface.normal_one_sided(u, v, sides(side));
         (surface.point(u, v), math::angle_between(normal(OneSided::Before), normal(OneSided::After)))
     };
     let most = in_u.chain(in_v).map(jump).fold((DVec3::ZERO, 0.0), |most, next| if next.1 > most.1 { next } else { most });
@@ -76,8 +76,8 @@ fn tip(surface: &Surface, tolerance: &Tolerance) -> Option<DVec3> {
     };
     (0..4).find_map(|k| {
         let Side::Pole(p) = surface.side(k) else { return None };
-        let ((u, v), lean) = (place(k, 0.5, 0.0), (OneSided::After, OneSided::After));
-        let upright = surface.normal_lean(u, v, lean);
+        let ((u, v), side) = (place(k, 0.5, 0.0), (OneSided::After, OneSided::After));
+        let upright = surface.normal_one_sided(u, v, side);
         let most_off = |inward: f64| {
             let normal = |i: usize| {
                 let (u, v) = place(k, (i as f64 + 0.5) / AROUND as f64, inward);

@@ -155,12 +155,12 @@ fn off(ball: &Ball, radius: f64, a: &Station, b: &Station) -> Option<Option<Stat
     const PLACES: [f64; 3] = [0.25, 0.5, 0.75];
     let piece = net(&[*a, *b], radius);
     let allowed = SHARE * ball.tolerance.point;
-    let lean = (OneSided::After, OneSided::After);
+    let side = (OneSided::After, OneSided::After);
     let mut middle = None;
     let mut near = true;
     for u in PLACES {
-        let jets = PLACES.map(|v| piece.jet(u, v, lean));
-        let ends = [piece.jet(u, 0.0, lean), piece.jet(u, 1.0, lean)];
+        let jets = PLACES.map(|v| piece.jet(u, v, side));
+        let ends = [piece.jet(u, 0.0, side), piece.jet(u, 1.0, side)];
         let plane = (between(a, b, u), (ends[0].du + ends[1].du).normalize_or_zero());
         let uv = [0, 1].map(|k: usize| a.uv[k].lerp(ball.faces[k].turned_to(b.uv[k], a.uv[k]), u));
         let Some(found) = ball.station(radius, plane, &Guess { uv, points: ends.map(|e| e.p) }) else {

@@ -85,11 +85,11 @@ impl Blend {
     }
 
     /// Point and derivatives, from the given sides where they jump.
-    pub fn jet(&self, u: f64, v: f64, lean: (OneSided, OneSided)) -> Jet2 {
-        let (a, b) = (self.u.weights(u, lean.0), self.v.weights(v, lean.1));
+    pub fn jet(&self, u: f64, v: f64, side: (OneSided, OneSided)) -> Jet2 {
+        let (a, b) = (self.u.weights(u, side.0), self.v.weights(v, side.1));
         let mut row = Row::default();
-        let along_v = |i: usize| self.along_v[i].jet(v, lean.1);
-        let along_u = |j: usize| self.along_u[j].jet(u, lean.0);
+        let along_v = |i: usize| self.along_v[i].jet(v, side.1);
+        let along_u = |j: usize| self.along_u[j].jet(u, side.0);
         if self.u.slopes().is_empty() {
             self.row(&a, &b, |_, i| along_v(i), &mut row);
         } else if !self.along_v.is_empty() {

@@ -54,14 +54,14 @@ impl Blend {
         }
     }
 
-    /// Jets of the tensor grid `us × vs`, u fastest, each with its own lean (see [`Blend::jet`]).
+    /// Jets of the tensor grid `us × vs`, u fastest, each with its own side (see [`Blend::jet`]).
     pub fn jets(&self, us: &[(f64, OneSided)], vs: &[(f64, OneSided)], out: &mut Vec<Jet2>) {
-        let a: Vec<Weights> = us.iter().map(|&(u, lean)| self.axes().0.weights(u, lean)).collect();
-        let rows: Vec<Weights> = vs.iter().map(|&(v, lean)| self.axes().1.weights(v, lean)).collect();
-        let curve = |j: usize| us.iter().map(|&(u, lean)| self.along_u()[j].jet(u, lean)).collect();
+        let a: Vec<Weights> = us.iter().map(|&(u, side)| self.axes().0.weights(u, side)).collect();
+        let rows: Vec<Weights> = vs.iter().map(|&(v, side)| self.axes().1.weights(v, side)).collect();
+        let curve = |j: usize| us.iter().map(|&(u, side)| self.along_u()[j].jet(u, side)).collect();
         let along_u: Vec<Vec<Jet>> = asked_terms(self.axes().1, self.along_u().len(), &rows, curve);
-        for (&(v, lean), b) in vs.iter().zip(&rows) {
-            let along_v = self.along_v().iter().map(|f| vec![f.jet(v, lean)]).collect();
+        for (&(v, side), b) in vs.iter().zip(&rows) {
+            let along_v = self.along_v().iter().map(|f| vec![f.jet(v, side)]).collect();
             let mut along_v: Vec<Vec<Jet>> = all_terms(self.axes().0, along_v);
             along_v.iter_mut().enumerate().for_each(|(i, f)| self.less_nodes(i, b, &mut f[0]));
             for (c, a) in a.iter().enumerate() {

@@ -55,13 +55,13 @@ impl Framed {
     }
 
     /// Point and derivatives, from the given sides where they jump.
-    pub fn jet(&self, u: f64, v: f64, lean: (OneSided, OneSided)) -> Jet2 {
-        self.carried(&self.path.jet(u, lean.0), &self.turn.at(u, lean.0), &self.profile.jet(v, lean.1))
+    pub fn jet(&self, u: f64, v: f64, side: (OneSided, OneSided)) -> Jet2 {
+        self.carried(&self.path.jet(u, side.0), &self.turn.at(u, side.0), &self.profile.jet(v, side.1))
     }
 
     /// Where a point of the profile, with its derivatives, is carried.
-    pub fn jet_of(&self, g: &Jet, u: f64, lean: OneSided) -> Jet2 {
-        self.carried(&self.path.jet(u, lean), &self.turn.at(u, lean), g)
+    pub fn jet_of(&self, g: &Jet, u: f64, side: OneSided) -> Jet2 {
+        self.carried(&self.path.jet(u, side), &self.turn.at(u, side), g)
     }
 
     /// What is known between two values of u, one strip for each formula.
@@ -96,9 +96,9 @@ impl Framed {
 
     /// Jets of the tensor grid, u fastest.
     pub fn jets(&self, us: &[(f64, OneSided)], vs: &[(f64, OneSided)], out: &mut Vec<Jet2>) {
-        let columns: Vec<(Jet, At)> = us.iter().map(|&(u, lean)| (self.path.jet(u, lean), self.turn.at(u, lean))).collect();
-        for &(v, lean) in vs {
-            let g = self.profile.jet(v, lean);
+        let columns: Vec<(Jet, At)> = us.iter().map(|&(u, side)| (self.path.jet(u, side), self.turn.at(u, side))).collect();
+        for &(v, side) in vs {
+            let g = self.profile.jet(v, side);
             out.extend(columns.iter().map(|(m, k)| self.carried(m, k, &g)));
         }
     }

@@ -74,14 +74,14 @@ impl Matrices {
         depth > 0 && self.halved((a, middle), of, depth - 1) && self.halved((middle, b), of, depth - 1)
     }
 
-    fn piece_at(&self, u: f64, lean: OneSided) -> usize {
+    fn piece_at(&self, u: f64, side: OneSided) -> usize {
         let inner = &self.stops[1..self.stops.len() - 1];
-        inner.partition_point(|&x| if lean == OneSided::Before { x < u - EPSILON } else { x <= u + EPSILON })
+        inner.partition_point(|&x| if side == OneSided::Before { x < u - EPSILON } else { x <= u + EPSILON })
     }
 
     /// Value and derivatives, from the given side at a stop.
-    pub fn at(&self, u: f64, lean: OneSided) -> At {
-        let k = self.piece_at(u, lean);
+    pub fn at(&self, u: f64, side: OneSided) -> At {
+        let k = self.piece_at(u, side);
         let (a, b) = (self.stops[k], self.stops[k + 1]);
         let by = 2.0 / (b - a);
         // From the nearer end, so that both ends are met exactly.

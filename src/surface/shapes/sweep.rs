@@ -128,8 +128,8 @@ impl Sweep {
     }
 
     /// Point and derivatives, from the given side in v where they jump.
-    pub fn jet(&self, u: f64, v: f64, lean: (OneSided, OneSided)) -> Jet2 {
-        self.carried(&self.profile.jet(v, lean.1), u)
+    pub fn jet(&self, u: f64, v: f64, side: (OneSided, OneSided)) -> Jet2 {
+        self.carried(&self.profile.jet(v, side.1), u)
     }
 
     /// Points of the tensor grid, u fastest: the profile is evaluated once per row, the turn once per column.
@@ -159,8 +159,8 @@ impl Sweep {
 
     /// Jets of the tensor grid, u fastest.
     pub fn jets(&self, us: &[(f64, OneSided)], vs: &[(f64, OneSided)], out: &mut Vec<Jet2>) {
-        for &(v, lean) in vs {
-            let g = self.profile.jet(v, lean);
+        for &(v, side) in vs {
+            let g = self.profile.jet(v, side);
             out.extend(us.iter().map(|&(u, _)| self.carried(&g, u)));
         }
     }

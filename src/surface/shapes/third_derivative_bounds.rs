@@ -18,7 +18,7 @@ const BOXES: usize = 3;
 const PLAIN: usize = 3;
 /// Bounds over smaller boxes as a share of those over larger ones, from which on boxes are small enough.
 const MAX_BOUND_RATIO: f64 = 0.75;
-/// What bounds in any direction weigh beside those along the normal: triangles hardly lean.
+/// What bounds in any direction weigh beside those along the normal: triangles hardly side.
 const LEANING: f64 = 0.1;
 /// Halvings of a box along each direction.
 const MAX_DEPTH: u8 = 6;

@@ -166,16 +166,16 @@ impl Axis {
     }
 
     /// The cell that holds a parameter.
-    pub fn cell(&self, x: f64, lean: OneSided) -> usize {
+    pub fn cell(&self, x: f64, side: OneSided) -> usize {
         let inner = &self.nodes[1..self.nodes.len() - 1];
-        inner.partition_point(|&node| if lean == OneSided::Before { node < x - EPSILON } else { node <= x + EPSILON })
+        inner.partition_point(|&node| if side == OneSided::Before { node < x - EPSILON } else { node <= x + EPSILON })
     }
 
     /// Blending values at a parameter.
-    pub fn weights(&self, x: f64, lean: OneSided) -> Weights {
+    pub fn weights(&self, x: f64, side: OneSided) -> Weights {
         match self.rule {
             Rule::Linear | Rule::Cubic => {
-                let k = self.cell(x, lean);
+                let k = self.cell(x, side);
                 let h = self.nodes[k + 1] - self.nodes[k];
                 let mut weights = Weights::room(k, 2);
                 // From the nearer node: at a node the weights are 0 and 1 without rounding.
@@ -192,7 +192,7 @@ impl Axis {
                 weights.set(near, [1.0 - value, -d1, -d2]);
                 weights
             }
-            Rule::Spline | Rule::Periodic => self.hermite(x, self.cell(x, lean)),
+            Rule::Spline | Rule::Periodic => self.hermite(x, self.cell(x, side)),
             Rule::Lagrange => {
                 let n = self.nodes.len();
                 let mut weights = Weights::room(0, n);
@@ -323,9 +323,9 @@ mod tests {
         for rule in [Rule::Linear, Rule::Cubic, Rule::Lagrange, Rule::Spline, Rule::Periodic] {
             let axis = Axis::new(vec![0.0, 0.15, 0.4, 0.55, 0.6, 0.83, 1.0], rule);
             for i in 0..=100 {
-                for lean in [OneSided::After, OneSided::Before] {
+                for side in [OneSided::After, OneSided::Before] {
                     let x = f64::from(i) / 100.0;
-                    let w = axis.weights(x, lean);
+                    let w = axis.weights(x, side);
                     let sums = w.values()[..axis.shares()].iter().fold([0.0; 3], |s, v| [s[0] + v[0], s[1] + v[1], s[2] + v[2]]);
                     assert!((sums[0] - 1.0).abs() < 1e-13 && sums[1].abs() < 1e-9 && sums[2].abs() < 1e-6, "{x} {sums:?}");
                 }
@@ -363,8 +363,8 @@ mod tests {
             let last = axis.nodes.len() - 1;
             // The curve at a seam is counted at both of its nodes.
             let round = rule == Rule::Periodic;
-            let of = |x: f64, lean: OneSided, i: usize, d: usize| {
-                let w = axis.weights(x, lean);
+            let of = |x: f64, side: OneSided, i: usize, d: usize| {
+                let w = axis.weights(x, side);
                 axis.whole(&w, i)[d] + if i == 0 && round { axis.whole(&w, last)[d] } else { 0.0 }
             };
             let seam = round.then_some((1.0, 0.0));

@@ -197,8 +197,8 @@ fn folds(surface: &Surface, path: &Chain, fraction: &dyn Fn(f64) -> Option<f64>,
     let (us, vs) = surface.breaks();
     let path_breaks = chain_breaks(path);
     let (us, vs) = (inside(if us.is_empty() { path_breaks } else { us }), inside(vs));
-    let lean = |list: &[f64]| list.iter().map(|x| (*x, OneSided::After)).collect::<Vec<_>>();
-    let jets = surface.jets(&lean(&us), &lean(&vs));
+    let side = |list: &[f64]| list.iter().map(|x| (*x, OneSided::After)).collect::<Vec<_>>();
+    let jets = surface.jets(&side(&us), &side(&vs));
     let mut worst: Option<(f64, usize)> = None;
     for (k, jet) in jets.iter().enumerate() {
         let Some(f) = fraction(us[k % us.len()]) else { continue };

@@ -157,13 +157,14 @@ impl<'a> Cells<'a> {
         for k in row.iter().map(|h| h.0) {
             let Some(own) = chain(k) else { continue };
             let piece = &self.pieces[k];
-            let TrimCurve::Pcurve(pcurve) = &piece.course else { continue };
+            let TrimCurve::Pcurve(pcurve) = &piece.trim_curve else { continue };
             let places = (1..MAX_SAMPLES).map(|n| pcurve.fraction(n as f64 / MAX_SAMPLES as f64)).map(|f| (own.point(f), pcurve.guess(f)));
             // Where pieces part they are near to each other in any case.
             for (at, uv) in places.filter(|(p, _)| p.distance(piece.p.0).min(p.distance(piece.p.2)) > beside * near) {
-                let passes =
-                    |course: &TrimCurve| course.places().windows(2).any(|w| TrimCurve::Line(w[0].into(), w[1].into()).touches(uv, NEAR));
-                for other in (0..self.pieces.len()).filter(|other| *other != k && passes(&self.pieces[*other].course)) {
+                let passes = |trim_curve: &TrimCurve| {
+                    trim_curve.places().windows(2).any(|w| TrimCurve::Line(w[0].into(), w[1].into()).touches(uv, NEAR))
+                };
+                for other in (0..self.pieces.len()).filter(|other| *other != k && passes(&self.pieces[*other].trim_curve)) {
                     let apart = chain(other).map_or(f64::INFINITY, |chain| chain.closest(at).2);
                     if apart <= near && least.as_ref().is_none_or(|least| apart < least.0) {
                         least = Some((apart, fault(k, other, at, apart)));
@@ -176,7 +177,7 @@ impl<'a> Cells<'a> {
 
     fn area(&self, row: &[Half]) -> f64 {
         let each = |(k, backwards): &Half| {
-            let mut places = self.pieces[*k].course.places();
+            let mut places = self.pieces[*k].trim_curve.places();
             if *backwards {
                 places.reverse();
             }
@@ -191,7 +192,7 @@ impl<'a> Cells<'a> {
     fn holds(&self, row: &[Half], p: DVec2) -> bool {
         let turn = |(k, backwards): &Half| {
             let piece = &self.pieces[*k];
-            let turn = self.base.turn_along(&piece.course, piece.own_chain(), p);
+            let turn = self.base.turn_along(&piece.trim_curve, piece.own_chain(), p);
             if *backwards { -turn } else { turn }
         };
         row.iter().map(turn).sum::<f64>().abs() > std::f64::consts::PI
@@ -212,7 +213,7 @@ impl<'a> Cells<'a> {
         let step = self.step;
         let places =
             [DVec2::ZERO, DVec2::X * step, DVec2::Y * step, DVec2::X * -step, DVec2::Y * -step, DVec2::splat(step), DVec2::splat(-step)];
-        let on_border = |p: DVec2| self.pieces.iter().any(|piece| piece.course.touches(p, 0.5 * step));
+        let on_border = |p: DVec2| self.pieces.iter().any(|piece| piece.trim_curve.touches(p, 0.5 * step));
         let mut copies = self.base.copies(foot.into());
         copies.extend(shifts(self.base).into_iter().map(|by| foot + by));
         let near = places.into_iter().flat_map(|d| copies.iter().map(move |at| *at + d));

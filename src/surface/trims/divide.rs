@@ -18,7 +18,7 @@ use crate::surface::faults::CutFault;
 use crate::surface::rails::side::{Border, Side};
 use crate::surface::rails::trim_curve::TrimCurve;
 use crate::surface::trims::cells::{Cells, Face};
-use crate::surface::trims::cutters::{Cutter, Meets, Piece, bounded, pieces, strands, within};
+use crate::surface::trims::cutters::{DividingCurve, Meets, Piece, bounded, dividing_curves, pieces, within};
 use crate::surface::trims::faces::{Edge, bridges, followers, is_plane, loops, without_tails};
 use crate::surface::trims::pcurve::is_pole;
 use crate::surface::trims::trim_loop::{TrimLoop, assembled, natural};
@@ -79,8 +79,8 @@ pub(crate) struct Dividing {
 
 /// The pieces of the border and of curves that divide a surface, loose ends left out.
 pub(crate) fn dividing(base: &Surface, cutters: &[Chain], meets: Meets, tolerance: &Tolerance) -> Result<Dividing> {
-    let strands = strands(base, cutters, meets, tolerance)?;
-    let (all, along) = pieces(base, &strands, tolerance)?;
+    let curves = dividing_curves(base, cutters, meets, tolerance)?;
+    let (all, along) = pieces(base, &curves, tolerance)?;
     let (edges, places) = graph(base, &all, tolerance);
     let bare: Vec<bool> = all.iter().map(|piece| piece.seam || matches!(piece.border.side, Side::Pole(_))).collect();
     let mut stays = without_tails(&edges, &sites(base, &places, tolerance), &bare);
@@ -92,12 +92,12 @@ pub(crate) fn dividing(base: &Surface, cutters: &[Chain], meets: Meets, toleranc
         bridges(&rows).into_iter().map(|k| kept[k]).filter(|k| !all[*k].rim).for_each(|k| stays[k] = false);
     }
     for (k, cutter) in cutters.iter().enumerate() {
-        let parts = || (0..all.len()).filter(|i| strands[all[*i].strand].cutter == Some(k));
+        let parts = || (0..all.len()).filter(|i| curves[all[*i].curve].cutter == Some(k));
         let outside = parts().next().is_none();
         if parts().any(|i| stays[i]) || outside && along.contains(&k) {
             continue;
         }
-        let mut ends = if outside { Vec::new() } else { open_ends(cutter, &strands, &all, &stays, tolerance) };
+        let mut ends = if outside { Vec::new() } else { open_ends(cutter, &curves, &all, &stays, tolerance) };
         if bounded(base) {
             let loops = natural(base, tolerance)?;
             ends.retain(|p| within(base, &loops, *p).is_some());
@@ -123,9 +123,9 @@ fn foot_of(base: &Surface, cutters: &[Chain], keep: DVec3, tolerance: &Tolerance
 }
 
 /// The ends of a cutter that are on nothing that divides the surface.
-fn open_ends(cutter: &Chain, strands: &[Cutter], all: &[Piece], stays: &[bool], tolerance: &Tolerance) -> Vec<DVec3> {
+fn open_ends(cutter: &Chain, curves: &[DividingCurve], all: &[Piece], stays: &[bool], tolerance: &Tolerance) -> Vec<DVec3> {
     let held = |p: DVec3| {
-        let near = |piece: &Piece| match (&strands[piece.strand].chain, piece.own_chain()) {
+        let near = |piece: &Piece| match (&curves[piece.curve].chain, piece.own_chain()) {
             (_, Some(run)) | (Some(run), None) => run.closest(p).2 <= 2.0 * tolerance.point,
             (None, None) => piece.p.1.distance(p) <= 2.0 * tolerance.point,
         };
@@ -143,7 +143,7 @@ type Places = Vec<(DVec2, DVec3)>;
 fn graph(base: &Surface, all: &[Piece], tolerance: &Tolerance) -> (Vec<Edge>, Places) {
     let (ends, places) = vertices(base, all, tolerance);
     // Curves that touch leave a vertex in one direction: at one distance from it they have parted, at one share of each perhaps not.
-    let length = |piece: &Piece| match (&piece.course, piece.own_chain()) {
+    let length = |piece: &Piece| match (&piece.trim_curve, piece.own_chain()) {
         (TrimCurve::Pcurve(pcurve), Some(chain)) => chain.length() * (pcurve.fraction(1.0) - pcurve.fraction(0.0)).abs(),
         _ => f64::INFINITY,
     };
@@ -154,13 +154,13 @@ fn graph(base: &Surface, all: &[Piece], tolerance: &Tolerance) -> (Vec<Edge>, Pl
     }
     let away: BTreeMap<usize, f64> = fans.iter().map(|(vertex, fan)| (*vertex, apart_at(all, fan, &length, tolerance))).collect();
     let out = |piece: &Piece, ends: &(usize, usize)| {
-        let place = |f: f64| match (&piece.course, piece.own_chain()) {
+        let place = |f: f64| match (&piece.trim_curve, piece.own_chain()) {
             (TrimCurve::Pcurve(pcurve), Some(chain)) => {
                 let f = pcurve.fraction(f);
                 foot::foot(base.evaluator(), chain.point(f), pcurve.guess(f)).0
             }
-            (course, _) => {
-                let places = course.places();
+            (trim_curve, _) => {
+                let places = trim_curve.places();
                 places[0].lerp(places[places.len() - 1], f)
             }
         };
@@ -183,7 +183,7 @@ fn apart_at(all: &[Piece], fan: &[(usize, bool)], length: &impl Fn(&Piece) -> f6
     let first = (START * shortest).max((CLEAR * tolerance.point).min(CLEAR_SHARE * shortest));
     let place = |(k, last): &(usize, bool), away: f64| {
         let (piece, share) = (&all[*k], away / length(&all[*k]));
-        match (&piece.course, piece.own_chain()) {
+        match (&piece.trim_curve, piece.own_chain()) {
             (TrimCurve::Pcurve(pcurve), Some(chain)) => Some(chain.point(pcurve.fraction(if *last { 1.0 - share } else { share }))),
             _ => None,
         }
@@ -267,16 +267,16 @@ pub(crate) fn walks(pieces: &[Piece], face: &Face) -> Vec<TrimLoop> {
 }
 
 fn walk(pieces: &[Piece], row: &[((usize, bool), DVec2)]) -> TrimLoop {
-    let mut walk = TrimLoop { borders: Vec::new(), courses: Vec::new(), chains: Vec::new() };
+    let mut walk = TrimLoop { borders: Vec::new(), trim_curves: Vec::new(), chains: Vec::new() };
     for ((k, backwards), by) in row {
         let piece = &pieces[*k];
-        let (border, course): (Border, TrimCurve) =
-            if *backwards { (piece.border.turned(), piece.course.turned()) } else { (piece.border.clone(), piece.course.clone()) };
+        let (border, trim_curve): (Border, TrimCurve) =
+            if *backwards { (piece.border.turned(), piece.trim_curve.turned()) } else { (piece.border.clone(), piece.trim_curve.clone()) };
         if let Side::Chain { chain, .. } = &border.side {
             walk.chains.push(chain.clone());
         }
         walk.borders.push(border);
-        walk.courses.push(course.shifted(*by));
+        walk.trim_curves.push(trim_curve.shifted(*by));
     }
     walk
 }

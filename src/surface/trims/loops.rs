@@ -50,11 +50,11 @@ impl Ring {
     pub fn of_walk(base: &Surface, walk: &TrimLoop, outer: bool, tolerance: &Tolerance) -> Result<Self> {
         let (mut chains, mut seams) = (Vec::new(), Vec::new());
         let sides = walk.borders.len();
-        for (k, (border, course)) in walk.borders.iter().zip(&walk.courses).enumerate() {
+        for (k, (border, trim_curve)) in walk.borders.iter().zip(&walk.trim_curves).enumerate() {
             let opposite = (sides == 4).then(|| walk.borders[(k + 2) % 4].turned());
-            let strand = of_border(base, border.clone(), course.clone(), opposite, tolerance)?;
-            if let Some(chain) = strand.chain {
-                if strand.seam { seams.push(chain) } else { chains.push(chain) }
+            let curve = of_border(base, border.clone(), trim_curve.clone(), opposite, tolerance)?;
+            if let Some(chain) = curve.chain {
+                if curve.seam { seams.push(chain) } else { chains.push(chain) }
             }
         }
         let of = if outer { base.origin() } else { chains.first().map_or(base.origin(), Chain::origin) };
@@ -170,7 +170,7 @@ pub(crate) fn crossing((a, b): (&Ring, &Ring), touch: &Touch, trimming: Origin, 
 impl TrimLoop {
     /// A place of it and its point in space: the farthest from a point at which it touches another loop.
     pub fn place_off(&self, base: &Surface, touched: Option<DVec3>) -> (DVec2, DVec3) {
-        let places = self.courses.iter().flat_map(TrimCurve::places).map(|uv| (uv, base.point(uv.x, uv.y)));
+        let places = self.trim_curves.iter().flat_map(TrimCurve::places).map(|uv| (uv, base.point(uv.x, uv.y)));
         let far = |p: &(DVec2, DVec3)| touched.map_or(0.0, |t| t.distance_squared(p.1));
         let first = |best: Option<(DVec2, DVec3)>, p: (DVec2, DVec3)| match best {
             Some(q) if far(&p) <= far(&q) => Some(q),
@@ -182,10 +182,10 @@ impl TrimLoop {
     /// The angle by which it turns about a place, by its curves and not by polygons.
     pub fn turning(&self, base: &Surface, p: DVec2) -> f64 {
         let turn = |k: usize| match &self.borders[k].side {
-            Side::Chain { chain, .. } => base.turn_along(&self.courses[k], Some(chain), p),
-            _ => base.turn_along(&self.courses[k], None, p),
+            Side::Chain { chain, .. } => base.turn_along(&self.trim_curves[k], Some(chain), p),
+            _ => base.turn_along(&self.trim_curves[k], None, p),
         };
-        (0..self.courses.len()).map(turn).sum::<f64>()
+        (0..self.trim_curves.len()).map(turn).sum::<f64>()
     }
 
     /// Whether it goes round a place.
@@ -195,7 +195,7 @@ impl TrimLoop {
 
     /// A place and the same place whole turns round the surface away, as far as the walk reaches.
     pub fn copies(&self, base: &Surface, p: DVec2) -> Vec<DVec2> {
-        let (low, high) = reach(&self.courses);
+        let (low, high) = reach(&self.trim_curves);
         let along = |closed: bool, axis: usize| if closed { within(p[axis], (low[axis], high[axis])) } else { vec![p[axis]] };
         let vs = along(base.closed().1, 1);
         along(base.closed().0, 0).into_iter().flat_map(|u| vs.iter().map(move |v| DVec2::new(u, *v))).collect()
@@ -213,7 +213,7 @@ pub(crate) fn nested(
     holes: &[(usize, &TrimLoop)],
     touched: impl Fn(usize, usize) -> Option<DVec3>,
 ) -> Option<(usize, usize, DVec3)> {
-    let reaches: Vec<(DVec2, DVec2)> = holes.iter().map(|(_, walk)| reach(&walk.courses)).collect();
+    let reaches: Vec<(DVec2, DVec2)> = holes.iter().map(|(_, walk)| reach(&walk.trim_curves)).collect();
     let near = |p: DVec2, (low, high): (DVec2, DVec2)| low.cmple(p).all() && p.cmple(high).all();
     for (inner, walk) in holes {
         let (first, _) = walk.place_off(base, None);

@@ -39,7 +39,9 @@ impl TrimLoop {
     /// Whether it comes back to its first place by a whole turn round the surface.
     pub fn winds(&self, base: &Surface) -> bool {
         let ends = |c: &TrimCurve| -> Option<(DVec2, DVec2)> { Some((*c.places().first()?, *c.places().last()?)) };
-        let (Some(first), Some(last)) = (self.courses.first().and_then(ends), self.courses.last().and_then(ends)) else { return false };
+        let (Some(first), Some(last)) = (self.trim_curves.first().and_then(ends), self.trim_curves.last().and_then(ends)) else {
+            return false;
+        };
         let turns = (last.1 - first.0).round();
         let closed = base.closed();
         closed.0 && turns.x != 0.0 || closed.1 && turns.y != 0.0
@@ -50,7 +52,7 @@ impl TrimLoop {
         let hairs = [DVec2::ZERO, DVec2::splat(NUDGE), DVec2::splat(-NUDGE), DVec2::new(NUDGE, -NUDGE), DVec2::new(-NUDGE, NUDGE)];
         let outline = bounds.polygon();
         let place = |p: DVec2| bounds.copies(base, p).into_iter().any(|at| hairs.iter().any(|hair| inside(&outline, at + *hair)));
-        self.courses.iter().flat_map(TrimCurve::places).all(place)
+        self.trim_curves.iter().flat_map(TrimCurve::places).all(place)
     }
 }
 
@@ -103,11 +105,11 @@ fn beside(base: &Surface, chains: &[Chain], tolerance: &Tolerance) -> Option<[DV
 fn border_places(base: &Surface, tolerance: &Tolerance) -> Result<Vec<DVec2>> {
     let mut found = Vec::new();
     for walk in natural(base, tolerance)? {
-        for (border, course) in walk.borders.iter().zip(&walk.courses) {
-            if matches!(border.side, Side::Pole(_)) || course.is_seam(base.closed()) {
+        for (border, trim_curve) in walk.borders.iter().zip(&walk.trim_curves) {
+            if matches!(border.side, Side::Pole(_)) || trim_curve.is_seam(base.closed()) {
                 continue;
             }
-            let places = course.places();
+            let places = trim_curve.places();
             // A place of a curve itself: its chords may lie outside.
             let k = places.len() / 2;
             let (a, b) = (places[k - 1], places[(k + 1).min(places.len() - 1)]);

@@ -281,7 +281,7 @@ impl Sides<'_> {
 
 /// A place of a piece with its direction there.
 fn middle(base: &Surface, piece: &Piece) -> Option<(DVec3, DVec3)> {
-    match (&piece.course, piece.own_chain()) {
+    match (&piece.trim_curve, piece.own_chain()) {
         (TrimCurve::Line(a, b), _) => {
             let (a, b) = (DVec2::from(*a), DVec2::from(*b));
             let at = a.lerp(b, MIDDLE);
@@ -298,7 +298,7 @@ fn middle(base: &Surface, piece: &Piece) -> Option<(DVec3, DVec3)> {
 
 /// Whether a point with its place on the surface lies on a piece.
 fn near(base: &Surface, piece: &Piece, p: DVec3, foot: DVec2, room: f64) -> bool {
-    match (piece.own_chain(), &piece.course) {
+    match (piece.own_chain(), &piece.trim_curve) {
         (Some(chain), _) => chain.closest(p).2 <= room,
         (None, TrimCurve::Line(a, b)) => {
             let (a, along) = (DVec2::from(*a), DVec2::from(*b) - DVec2::from(*a));

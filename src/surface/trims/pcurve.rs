@@ -110,7 +110,7 @@ fn on_pole_side(surface: &Surface, uv: DVec2) -> bool {
     let parts = surface.parts();
     let is_pole = |k: usize| parts.borders.get(k).is_some_and(|border| matches!(border.side, Side::Pole(_)));
     match &parts.trim {
-        Some(trim) => trim.courses.iter().enumerate().any(|(k, course)| is_pole(k) && course.touches(uv, NUDGE)),
+        Some(trim) => trim.trim_curves.iter().enumerate().any(|(k, trim_curve)| is_pole(k) && trim_curve.touches(uv, NUDGE)),
         None if parts.domain == Domain::Square => {
             let off = [uv.y, 1.0 - uv.x, 1.0 - uv.y, uv.x];
             off.iter().enumerate().any(|(k, off)| is_pole(k) && off.abs() <= NUDGE)

@@ -152,7 +152,7 @@ impl Holes<'_> {
         let offsets = [DVec2::ZERO, DVec2::splat(NUDGE), DVec2::splat(-NUDGE), DVec2::new(NUDGE, -NUDGE), DVec2::new(-NUDGE, NUDGE)];
         let all = |by: &DVec2| {
             let inside = |p: DVec2| offsets.iter().any(|off| outer.goes_round(self.base, p + *by + *off));
-            inside(place) && walk.courses.iter().flat_map(TrimCurve::places).all(inside)
+            inside(place) && walk.trim_curves.iter().flat_map(TrimCurve::places).all(inside)
         };
         Ok(outer.copies(self.base, place).into_iter().map(|at| at - place).find(all))
     }

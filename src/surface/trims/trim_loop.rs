@@ -20,14 +20,14 @@ use crate::surface::rails::trim_curve::{Pcurve, TrimCurve};
 /// A closed walk over a surface.
 pub(crate) struct TrimLoop {
     pub borders: Vec<Border>,
-    pub courses: Vec<TrimCurve>,
+    pub trim_curves: Vec<TrimCurve>,
     pub chains: Vec<Chain>,
 }
 
 impl TrimLoop {
     /// Its corners in (u, v), all on its curves.
     pub fn polygon(&self) -> Vec<DVec2> {
-        self.courses
+        self.trim_curves
             .iter()
             .flat_map(|c| {
                 let mut places = c.places();
@@ -44,19 +44,19 @@ impl TrimLoop {
 
     fn turned(self) -> Self {
         let borders = self.borders.iter().rev().map(Border::turned).collect();
-        let courses = self.courses.iter().rev().map(TrimCurve::turned).collect();
-        Self { borders, courses, ..self }
+        let trim_curves = self.trim_curves.iter().rev().map(TrimCurve::turned).collect();
+        Self { borders, trim_curves, ..self }
     }
 
     /// Moved in (u, v).
     pub fn shifted(self, by: DVec2) -> Self {
-        let courses = self.courses.iter().map(|c| c.shifted(by)).collect();
-        Self { courses, ..self }
+        let trim_curves = self.trim_curves.iter().map(|c| c.shifted(by)).collect();
+        Self { trim_curves, ..self }
     }
 
     /// The same once more.
     pub fn copied(&self) -> Self {
-        Self { borders: self.borders.clone(), courses: self.courses.clone(), chains: self.chains.clone() }
+        Self { borders: self.borders.clone(), trim_curves: self.trim_curves.clone(), chains: self.chains.clone() }
     }
 }
 
@@ -69,17 +69,17 @@ fn area2(polygon: &[DVec2]) -> f64 {
 pub(crate) fn assembled(base: &Surface, walks: Vec<TrimLoop>, origin: Origin) -> Result<Surface> {
     let mut parts = Parts { origin, kind: SurfaceKind::Trim, domain: Domain::Loop, ..base.parts().clone() };
     (parts.borders, parts.chains) = (Vec::new(), Vec::new());
-    let mut trim = Trim { ground: base.ground(), loops: Vec::new(), courses: Vec::new(), reach: (DVec2::ZERO, DVec2::ONE) };
+    let mut trim = Trim { ground: base.ground(), loops: Vec::new(), trim_curves: Vec::new(), reach: (DVec2::ZERO, DVec2::ONE) };
     for (k, walk) in walks.into_iter().enumerate() {
         // Outer loops run counter-clockwise in (u, v), the others clockwise.
         let ascending = area2(&walk.polygon()) > 0.0;
         let walk = if ascending == (k == 0) { walk } else { walk.turned() };
         trim.loops.push(walk.borders.len());
-        trim.courses.extend(walk.courses);
+        trim.trim_curves.extend(walk.trim_curves);
         parts.borders.extend(walk.borders);
         parts.chains.extend(walk.chains);
     }
-    trim.reach = reach(&trim.courses);
+    trim.reach = reach(&trim.trim_curves);
     parts.trim = Some(Arc::new(trim));
     Ok(Surface::new(parts))
 }
@@ -101,7 +101,7 @@ pub(crate) fn natural(base: &Surface, tolerance: &Tolerance) -> Result<Vec<TrimL
             first += n;
             let borders = parts.borders[range.clone()].to_vec();
             let chains = borders.iter().filter_map(|b| if let Side::Chain { chain, .. } = &b.side { Some(chain.clone()) } else { None });
-            TrimLoop { chains: chains.collect(), courses: trim.courses[range].to_vec(), borders }
+            TrimLoop { chains: chains.collect(), trim_curves: trim.trim_curves[range].to_vec(), borders }
         };
         return Ok(trim.loops.iter().map(walk).collect());
     }
@@ -121,8 +121,8 @@ pub(crate) fn natural(base: &Surface, tolerance: &Tolerance) -> Result<Vec<TrimL
     let n = corners.len();
     // Sides run with ascending u or v; the far ones against the loop.
     let borders = (0..n).map(|k| if k >= 2 { parts.borders[k].turned() } else { parts.borders[k].clone() }).collect();
-    let courses = (0..n).map(|k| TrimCurve::Line(corners[k], corners[(k + 1) % n])).collect();
-    Ok(vec![TrimLoop { borders, courses, chains: parts.chains.clone() }])
+    let trim_curves = (0..n).map(|k| TrimCurve::Line(corners[k], corners[(k + 1) % n])).collect();
+    Ok(vec![TrimLoop { borders, trim_curves, chains: parts.chains.clone() }])
 }
 
 /// A loop of curves on the surface.
@@ -136,7 +136,7 @@ pub(crate) fn around(base: &Surface, chains: &[Chain], role: LoopRole, tolerance
 fn followed(base: &Surface, steps: &[boundary::Step], tolerance: &Tolerance) -> Result<TrimLoop> {
     let first = closest(base, boundary::start(&steps[0]));
     let mut place = DVec2::new(first.uv.0, first.uv.1);
-    let mut walk = TrimLoop { borders: Vec::new(), courses: Vec::new(), chains: Vec::new() };
+    let mut walk = TrimLoop { borders: Vec::new(), trim_curves: Vec::new(), chains: Vec::new() };
     for (chain, against) in steps {
         let (from, to) = if *against { (1.0, 0.0) } else { (0.0, 1.0) };
         let pcurve = Pcurve::follow(base, chain, (from, to), place, tolerance.point).map_err(|off| {
@@ -145,7 +145,7 @@ fn followed(base: &Surface, steps: &[boundary::Step], tolerance: &Tolerance) -> 
         })?;
         place = pcurve.ends().1;
         walk.chains.push(chain.clone());
-        walk.courses.push(TrimCurve::Pcurve(Arc::new(pcurve)));
+        walk.trim_curves.push(TrimCurve::Pcurve(Arc::new(pcurve)));
         walk.borders.push(Border::chain(chain.clone(), *against));
     }
     Ok(walk)

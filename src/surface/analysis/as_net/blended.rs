@@ -26,8 +26,8 @@ use crate::surface::shapes::weights::{Axis, Rule};
 const PARTS: usize = 16;
 
 impl Course for &Rail {
-    fn jet(&self, x: f64, lean: OneSided) -> Jet {
-        Rail::jet(self, x, lean)
+    fn jet(&self, x: f64, side: OneSided) -> Jet {
+        Rail::jet(self, x, side)
     }
 
     fn line(&self, x0: f64, x1: f64) -> Line {
@@ -174,9 +174,9 @@ fn cardinals(axis: &Axis, breaks: &Breaks) -> Vec<Vec<f64>> {
 }
 
 /// Value and derivatives of every node's blending function, slopes across the nodes counted to the nodes that they are sums of.
-fn whole(axis: &Axis, x: f64, lean: OneSided) -> Vec<[f64; 3]> {
+fn whole(axis: &Axis, x: f64, side: OneSided) -> Vec<[f64; 3]> {
     let mut sums = vec![[0.0; 3]; axis.nodes.len()];
-    for (term, w) in axis.weights(x, lean).iter() {
+    for (term, w) in axis.weights(x, side).iter() {
         match term.checked_sub(sums.len()) {
             None => (0..3).for_each(|d| sums[term][d] += w[d]),
             Some(k) => {

@@ -29,10 +29,10 @@ struct Carried<'s> {
 }
 
 impl Course for Carried<'_> {
-    fn jet(&self, x: f64, lean: OneSided) -> Jet {
+    fn jet(&self, x: f64, side: OneSided) -> Jet {
         let g = Jet { p: self.from, ..Jet::default() };
         let jet = match self.shape {
-            Shape::Framed(framed) => framed.jet_of(&g, x, lean),
+            Shape::Framed(framed) => framed.jet_of(&g, x, side),
             Shape::Sweep(sweep) => sweep.jet_of(&g, x),
             _ => return g,
         };

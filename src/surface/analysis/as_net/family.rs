@@ -40,7 +40,7 @@ const JUMP: f64 = 16.0;
 /// A curve under the surface's parameter.
 pub trait Course: Sync {
     /// Point and derivatives, from the given side.
-    fn jet(&self, x: f64, lean: OneSided) -> Jet;
+    fn jet(&self, x: f64, side: OneSided) -> Jet;
     /// Bounds between two parameters.
     fn line(&self, x0: f64, x1: f64) -> Line;
     /// Parameters of its corners, ends left out.

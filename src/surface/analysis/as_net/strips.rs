@@ -90,10 +90,10 @@ impl<'s> Fit<'s> {
         let inside = |stops: &[f64]| -> Vec<f64> { stops.windows(2).flat_map(|w| PLACES.map(|x| w[0] + (w[1] - w[0]) * x)).collect() };
         let (us, vs) = (inside(&self.us), inside(&self.vs));
         let far = |us: &[f64], vs: &[f64]| -> Vec<bool> {
-            let lean = |list: &[f64]| list.iter().map(|x| (*x, OneSided::After)).collect::<Vec<At>>();
+            let side = |list: &[f64]| list.iter().map(|x| (*x, OneSided::After)).collect::<Vec<At>>();
             let mut found = vec![DVec3::ZERO; us.len() * vs.len()];
             net.grid(us, vs, &mut found);
-            let jets = self.jets(&lean(us), &lean(vs));
+            let jets = self.jets(&side(us), &side(vs));
             found.iter().zip(jets).map(|(p, jet)| p.distance(jet.p) > 0.5 * self.tolerance.point).collect()
         };
         let n = PLACES.len();
@@ -173,15 +173,15 @@ fn knots(stops: &[f64], smooth: &[bool]) -> Vec<f64> {
 
 /// The jet at a distance: point, ∂u, ∂v and ∂uv; zero where a surface has no normal.
 pub(crate) fn beside(surface: &Surface, (u, v): ((f64, OneSided), (f64, OneSided)), distance: f64) -> Jet2 {
-    let lean = (u.1, v.1);
+    let side = (u.1, v.1);
     let step = |x: (f64, OneSided)| if x.1 == OneSided::After && x.0 + NUDGE <= 1.0 || x.0 < NUDGE { NUDGE } else { -NUDGE };
     let (du, dv) = (step(u), step(v));
-    let jet = surface.jet_one_sided(u.0, v.0, lean);
-    let normal = |u: f64, v: f64| surface.normal_lean(u, v, lean);
+    let jet = surface.jet_one_sided(u.0, v.0, side);
+    let normal = |u: f64, v: f64| surface.normal_one_sided(u, v, side);
     let n = normal(u.0, v.0);
     let differences = || ((normal(u.0 + du, v.0) - n) / du, (normal(u.0, v.0 + dv) - n) / dv);
     let (nu, nv) = slopes(&jet).unwrap_or_else(differences);
-    let beyond = slopes(&surface.jet_one_sided(u.0, v.0 + dv, lean)).map_or(nu, |next| next.0);
+    let beyond = slopes(&surface.jet_one_sided(u.0, v.0 + dv, side)).map_or(nu, |next| next.0);
     Jet2 {
         p: jet.p + n * distance,
         du: jet.du + nu * distance,

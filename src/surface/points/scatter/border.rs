@@ -33,7 +33,7 @@ pub struct Side {
 }
 
 /// A triangle over a side of the border whose angles there have no larger tangent (about 3°) is no part of the surface: its points are
-/// about in a row, as those of a grid are where the plane leans, and in its narrow height the surface would bend without bounds.
+/// about in a row, as those of a grid are where the plane sides, and in its narrow height the surface would bend without bounds.
 const THIN: f64 = 0.05;
 
 /// The triangles without thin ones along the border, and those no higher than `least` (points that are in a row but for rounding), and
@@ -147,7 +147,7 @@ pub fn surface(field: Field, runs: &[Vec<Side>], points: usize, origin: Origin, 
     if square {
         return Ok(base);
     }
-    let mut walk = TrimLoop { borders: Vec::new(), courses: Vec::new(), chains: Vec::new() };
+    let mut walk = TrimLoop { borders: Vec::new(), trim_curves: Vec::new(), chains: Vec::new() };
     for (curve, start) in curves.iter().zip(corners) {
         let chain = Chain::of_curve(curve);
         let pcurve = Pcurve::follow(&base, &chain, (0.0, 1.0), start, tolerance.point).map_err(|off| {
@@ -155,7 +155,7 @@ pub fn surface(field: Field, runs: &[Vec<Side>], points: usize, origin: Origin, 
             Fault::from(SurfaceFault::LoopOutsideSurface { of: origin, surface: origin, off, at, tolerance: tolerance.point })
         })?;
         walk.borders.push(Border::chain(chain.clone(), false));
-        walk.courses.push(TrimCurve::Pcurve(Arc::new(pcurve)));
+        walk.trim_curves.push(TrimCurve::Pcurve(Arc::new(pcurve)));
         walk.chains.push(chain);
     }
     let made = assembled(&base, vec![walk], origin)?;
