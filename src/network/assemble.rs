@@ -1,7 +1,7 @@
 //! From contacts to nodes and links (`docs/notes/network.md`).
 //!
 //! Everything is made afresh from the contacts, so that inserting, removing and rebuilding cannot differ:
-//! sites (ends, cuts, contacts) are clustered to nodes, nodes become stations along each curve, and the stretches
+//! sites (ends, cuts, contacts) are clustered to nodes, nodes become stations along each curve, and the segments
 //! between stations become links, shared ones once.
 
 use glam::DVec3;
@@ -51,7 +51,7 @@ pub struct Stations {
 pub fn assemble(curves: &mut [NetCurve], parts: &Parts) -> Result<(Vec<Node>, Vec<Link>, Vec<Fault>)> {
     let mut stations = stations(curves, parts)?;
     lonely_rings(curves, parts, &mut stations);
-    let shared = shared::match_stretches(curves, parts, &mut stations);
+    let shared = shared::match_segments(curves, parts, &mut stations);
     Ok(number(curves, stations, shared))
 }
 
@@ -344,14 +344,14 @@ fn number(curves: &mut [NetCurve], stations: Stations, shared: shared::Shared) -
     (nodes, links, shared.notes)
 }
 
-/// Whether a stretch of one curve runs against the stretch of another that it shares.
+/// Whether a segment of one curve runs against the segment of another that it shares.
 fn runs_against(curves: &[NetCurve], (k, i): (usize, usize), (owner, j): (usize, usize)) -> bool {
     let (net, other) = (&curves[k], &curves[owner]);
     let (own, theirs) = ((net.nodes[i], net.nodes[i + 1]), (other.nodes[j], other.nodes[j + 1]));
     if own.0 != own.1 {
         return own != theirs;
     }
-    // A shared loop: the first quarter tells.
+    // A shared loop: the first quarter decides.
     let at = |net: &NetCurve, i: usize, x: f64| {
         let s = net.stations[i] + (net.stations[i + 1] - net.stations[i]) * x;
         let length = net.curve.length();

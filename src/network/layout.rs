@@ -146,7 +146,7 @@ fn enough(layout: &Layout, closed_u: bool, closed_v: bool) -> Result<(), Failure
     if across_u && across_v { Ok(()) } else { Err((0.5, FlowFault::TooFew { given: layout.grid.lists.len() })) }
 }
 
-/// The Φ that orders the Ψ and tells +v between poles: the first curve written when it is one, else Φ at u = 0.
+/// The Φ that orders the Ψ and gives +v between poles: the first curve written when it is one, else Φ at u = 0.
 fn guide(layout: &Layout, first_column: usize) -> usize {
     let Division { phi, psi, .. } = layout.division;
     if psi.first().is_none_or(|&c| phi[0] < c) && !layout.division.poles.is_empty() { 0 } else { first_column }
@@ -178,7 +178,7 @@ fn start_pole(layout: &Layout, guide: usize) -> Option<usize> {
 }
 
 /// Whether each ring runs against the one at place `first`, from neighbour to neighbour: only where at most two curves pass
-/// them, as more than two tell by their order.
+/// them, as the order of more than two decides.
 fn ways(grid: &Grid, rings: &[Ring], first: usize) -> Vec<bool> {
     let mut ways = vec![false; rings.len()];
     if rings.iter().any(|ring| ring.passages.len() > 2) {
@@ -191,7 +191,7 @@ fn ways(grid: &Grid, rings: &[Ring], first: usize) -> Vec<bool> {
     ways
 }
 
-/// Whether a curve meets the others in falling order; rings (`way`) by their cyclic order, or as they are told where they have none.
+/// Whether a curve meets the others in falling order; rings (`way`) by their cyclic order, or as `way` says where they have none.
 fn direction(curve: usize, at: &[f64], way: Option<bool>, others: &[usize], nodes: &[usize]) -> Result<bool, Failure> {
     let Some(way) = way else {
         let reversed = at.len() > 1 && at[at.len() - 1] < at[0];

@@ -92,7 +92,7 @@ pub fn closest_points(a: &Chain, b: &Chain) -> (DVec3, DVec3) {
     best
 }
 
-/// Places of the first two of some chains that run over the same overlaps, in either direction.
+/// Places of the first two of some chains that run over the same parts of curves, in either direction.
 pub fn given_twice(chains: &[Chain], tolerance: &Tolerance) -> Option<(usize, usize)> {
     let ends = |c: &Chain| (c.start(), c.end());
     let same_ends = |a: &Chain, b: &Chain| {

@@ -20,7 +20,7 @@ use crate::network::net_fault::NetFault;
 const COMPARED: usize = 32;
 
 /// Each curve once: one that runs along another over its whole length, either way, is the same curve given twice, as a net
-/// closed by repeating its first curve has it. Of curves that differ within the tolerance the one kept is told by its points,
+/// closed by repeating its first curve has it. Of curves that differ within the tolerance which one is kept follows from its points,
 /// not by its place in the list; it runs like the first one given.
 pub fn distinct(family: Vec<Chain>, tolerance: &Tolerance) -> Vec<Chain> {
     let mut kept: Vec<Chain> = Vec::with_capacity(family.len());

@@ -324,7 +324,7 @@ impl Touching<'_> {
             if a.factor <= 0.0 || b.factor <= 0.0 {
                 return None;
             }
-            // At the old radius the first step follows the change of radius, later ones mend what is left.
+            // At the old radius the first step follows the change of radius, later ones correct what is left.
             let miss = if round == 0 { (a.left - b.left) * (to - from) } else { a.p - b.p };
             if round > 0 && miss.length() <= EPSILON * scale {
                 return Some((ta, tb));

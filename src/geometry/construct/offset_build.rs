@@ -51,7 +51,7 @@ fn check_plane(curve: &Curve, normal: DVec3) -> Result<()> {
     Err(ValueFault::NotItsPlane { argument: "normal", by: out }.into())
 }
 
-/// How far the curve may leave the plane through its start with this unit normal; its whole size where that is not easily told.
+/// How far the curve may leave the plane through its start with this unit normal; its whole size where that is not known in closed form.
 pub(crate) fn height_over(curve: &Curve, normal: DVec3) -> f64 {
     let start = curve.start();
     let high = |p: DVec3| (p - start).dot(normal).abs();

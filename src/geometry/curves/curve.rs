@@ -107,7 +107,7 @@ impl Curve {
         Self(Arc::new(Inner { shape, kind: *kind, origin, through: *through, lengths, pieces }))
     }
 
-    /// The same shape, told as made with another word.
+    /// The same shape, as if made with another word.
     pub(crate) fn of_kind(&self, kind: Kind) -> Self {
         Self::new(self.0.shape.clone(), kind, self.0.origin)
     }
@@ -289,7 +289,7 @@ impl Curve {
         Self::new(shape, kind, self.origin())
     }
 
-    /// The curve carried by a motion, exactly.
+    /// The image under a motion, exactly.
     pub fn moved(&self, motion: &Motion) -> Self {
         let moved = self.with_shape(match &self.0.shape {
             Shape::Line(a, b) => Shape::Line(motion.point(*a), motion.point(*b)),

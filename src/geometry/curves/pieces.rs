@@ -20,12 +20,12 @@ use crate::geometry::shapes::nurbs_edit::Bezier;
 const SPREAD: f64 = 0.3;
 /// A piece of a spline is halved at most this often; what is left then holds a cusp.
 const DEPTH: u32 = 24;
-/// Pieces of one polynomial or rational stretch at most: more say nothing that the bounds of fewer do not.
+/// Pieces of one polynomial or rational part at most: more say nothing that the bounds of fewer do not.
 const MOST: usize = 1 << 12;
 /// A piece shorter than this many roundings of its coordinates has no direction.
 const STILL: f64 = 8.0;
 
-/// A smooth stretch of a curve between corners: where a Newton iteration may wander.
+/// A smooth part of a curve between corners: where a Newton iteration may wander.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Section {
     /// Index of the piece of a composite curve, else 0.
@@ -210,7 +210,7 @@ pub(crate) fn children(at: usize, low: usize, high: usize) -> (usize, usize, usi
     (at + 1, at + 2 * (middle - low), middle)
 }
 
-/// Stretches of a simple curve's section with their rates.
+/// Pieces of a simple curve's section with their rates.
 fn rated(curve: &Curve, range: (f64, f64)) -> Vec<(f64, f64, Rates)> {
     match curve.shape() {
         Shape::Line(..) | Shape::Composite(_) => vec![(range.0, range.1, Rates { turn: 0.0, bend: 0.0 })],

@@ -304,7 +304,7 @@ impl Describe for CurveFault {
 }
 
 /// Digits of a largest size in a message.
-const TOLD_DIGITS: i32 = 3;
+const STATED_DIGITS: i32 = 3;
 
 fn narrow_corner(say: &dyn Say, argument: &'static str, wanted: f64, largest: f64, at: DVec3) -> Report {
     let (what, size) = if argument == "length" { ("cut", "length") } else { ("rounding", "radius") };
@@ -313,10 +313,10 @@ fn narrow_corner(say: &dyn Say, argument: &'static str, wanted: f64, largest: f6
         return Report::new("E414", message).label(Subject::Argument(argument), "does not fit at any size");
     }
     // Rounded down, so that the stated size fits; by less than it was searched for, so that 5 mm stays 5 mm.
-    let step = math::pow(10.0, math::log10(largest).floor() + 1.0 - f64::from(TOLD_DIGITS));
-    let told = (largest * (1.0 + NEAREST) / step).floor() * step;
+    let step = math::pow(10.0, math::log10(largest).floor() + 1.0 - f64::from(STATED_DIGITS));
+    let rounded = (largest * (1.0 + NEAREST) / step).floor() * step;
     let message = format!("a {what} of {} does not fit the corner at {}", say.length(wanted), say.point(at));
-    let put = typed(say, told);
+    let put = typed(say, rounded);
     Report::new("E414", message)
         .label(Subject::Argument(argument), format!("at most {put} there"))
         .help(format!("{argument}: {put}"))

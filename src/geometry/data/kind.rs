@@ -33,7 +33,7 @@ pub enum Kind {
     Composite,
     /// Line of constant u or v of a surface.
     Iso,
-    /// Curve carried to a surface.
+    /// Curve projected to a surface.
     Project,
     /// Curve in which surfaces meet.
     Meet,

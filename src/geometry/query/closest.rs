@@ -1,4 +1,4 @@
-//! Nearest points, found by bounds: no stretch is left out that could hold a nearer one.
+//! Nearest points, found by bounds: no part is left out that could hold a nearer one.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;

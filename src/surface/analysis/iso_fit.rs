@@ -1,6 +1,6 @@
 //! Lines of constant u or v that have no exact form, as cubics within a tolerance.
 //!
-//! Each cubic has the line's ends and derivatives. What it is off is bounded, not sampled: about the middle of a stretch
+//! Each cubic has the line's ends and derivatives. What it is off is bounded, not sampled: about the middle of an interval
 //! of half width h the difference e is at most |e| + h |e′| there plus ½ h² times the range of e″, which is the surface's
 //! range of second derivatives less the cubic's (`docs/notes/bounds.md`).
 
@@ -23,8 +23,8 @@ use crate::surface::data::one_sided::OneSided;
 const SHARE: f64 = 0.25;
 /// Cubics at most.
 const MOST_PIECES: usize = 1 << 14;
-/// Stretches in which one cubic is looked at, at most.
-const STRETCHES: usize = 64;
+/// Intervals in which one cubic is looked at, at most.
+const INTERVALS: usize = 64;
 
 /// A line with what it is fitted to.
 struct Fit<'a> {
@@ -109,7 +109,7 @@ impl Fit<'_> {
                 continue;
             }
             seen += 1;
-            if off > self.allowed || seen + open.len() > STRETCHES {
+            if off > self.allowed || seen + open.len() > INTERVALS {
                 return false;
             }
             open.push((middle, b));

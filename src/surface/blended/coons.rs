@@ -177,13 +177,13 @@ pub(crate) fn finish(mut blend: Blend, made: Made, tolerance: &Tolerance, notes:
     })
 }
 
-/// Finds the kink lines of both directions and tells the rails; W614 for slivers.
+/// Finds the kink lines of both directions and sets those of the rails; W614 for slivers.
 pub(crate) fn set_kinks(blend: &mut Blend, origin: Origin, tolerance: &Tolerance, notes: &mut Vec<Fault>) -> (Vec<f64>, Vec<f64>) {
     let mut lines = [Vec::new(), Vec::new()];
     let creases = [blend.axes().0.creases().to_vec(), blend.axes().1.creases().to_vec()];
     let (along_u, along_v) = blend.rails_mut();
     for (direction, (rails, lines)) in [along_u, along_v].into_iter().zip(&mut lines).enumerate() {
-        // Where no curve runs along them lines are told apart by their parameters alone.
+        // Where no curve runs along them lines are separated by their parameters alone.
         let longest = if rails.is_empty() { f64::INFINITY } else { rails.iter().map(Rail::length).fold(0.0, f64::max) };
         let mut own: Vec<Vec<(f64, f64)>> = rails.iter().map(|rail| rail.kink_lines(tolerance)).collect();
         own.push(creases[direction].iter().map(|&x| (x, 0.0)).collect());

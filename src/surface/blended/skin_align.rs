@@ -14,7 +14,7 @@ use crate::surface::rails::ring::{PLACES, Ring};
 
 /// Starts tried along a closed section before the best one is made better.
 const STARTS: usize = 64;
-/// Stretches over which squared distances are integrated, beside those between corners.
+/// Intervals over which squared distances are integrated, beside those between corners.
 const PANELS: usize = 16;
 /// Points of the rule for each of them.
 const ORDER: usize = 3;

@@ -19,7 +19,7 @@ pub(crate) fn within(x: f64, (low, high): (f64, f64)) -> Vec<f64> {
     turns.into_iter().map(|n| x + n as f64).collect()
 }
 
-/// Halvings of a stretch of a border, one after the other and in all: where a damaged border jumps to and fro each half may be as long.
+/// Halvings of a piece of a border, one after the other and in all: where a damaged border jumps to and fro each half may be as long.
 const MAX_DEPTH: u32 = 40;
 const MOST: u32 = 16 * MAX_DEPTH;
 
@@ -83,12 +83,12 @@ impl Surface {
                     }
                     at.windows(2).map(|w| self.turn_of(chain, (w[0], w[1]), p, MAX_DEPTH, &mut { MOST })).sum()
                 };
-                pcurve.stretches().map(turned).sum()
+                pcurve.boxed_pieces().map(turned).sum()
             }
         }
     }
 
-    /// The same for a stretch of a chain between two of its feet, halved while the place may lie between it and its chord.
+    /// The same for a piece of a chain between two of its feet, halved while the place may lie between it and its chord.
     fn turn_of(&self, chain: &Chain, ((fa, a), (fb, b)): (Foot, Foot), p: DVec2, deep: u32, left: &mut u32) -> f64 {
         let length = a.distance(b);
         let nearest = {

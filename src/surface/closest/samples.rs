@@ -39,9 +39,9 @@ pub(crate) struct Samples {
 #[derive(Clone, Debug, Default)]
 struct Line {
     at: Vec<f64>,
-    /// Between which creases each of them lies, as places among `stops`: of the stretch before and of the one after, which differ on a
+    /// Between which creases each of them lies, as places among `stops`: of the interval before and of the one after, which differ on a
     /// crease only.
-    stretches: Vec<(usize, usize)>,
+    intervals: Vec<(usize, usize)>,
     /// Creases, with 0 and 1.
     stops: Vec<f64>,
     /// The places among `at` of the stops.
@@ -83,39 +83,39 @@ impl Line {
         }
         stops.push(1.0);
         ends.push(at.len().saturating_sub(1));
-        let stretch = |k: usize| {
+        let interval = |k: usize| {
             let after = ends[1..ends.len() - 1].partition_point(|end| *end <= k);
             let before = ends[1..ends.len() - 1].partition_point(|end| *end < k);
             (before, after)
         };
-        let stretches = (0..at.len()).map(stretch).collect();
-        Self { at, stretches, stops, ends, closed }
+        let intervals = (0..at.len()).map(interval).collect();
+        Self { at, intervals, stops, ends, closed }
     }
 
-    /// The stretches that a sample belongs to.
+    /// The intervals that a sample belongs to.
     fn of(&self, k: usize) -> impl Iterator<Item = usize> + use<> {
-        let (before, after) = self.stretches[k];
+        let (before, after) = self.intervals[k];
         before..=after
     }
 
-    /// The samples beside one in a stretch, and itself.
-    fn beside(&self, k: usize, stretch: usize) -> std::ops::RangeInclusive<usize> {
-        k.saturating_sub(1).max(self.ends[stretch])..=(k + 1).min(self.ends[stretch + 1])
+    /// The samples beside one in an interval, and itself.
+    fn beside(&self, k: usize, interval: usize) -> std::ops::RangeInclusive<usize> {
+        k.saturating_sub(1).max(self.ends[interval])..=(k + 1).min(self.ends[interval + 1])
     }
 
-    fn within(&self, stretch: usize) -> (f64, f64) {
-        (self.stops[stretch], self.stops[stretch + 1])
+    fn within(&self, interval: usize) -> (f64, f64) {
+        (self.stops[interval], self.stops[interval + 1])
     }
 
-    /// What follows a stretch at its end where `x` is: the place there and its stretch, beyond a crease or a seam.
+    /// What follows an interval at its end where `x` is: the place there and its interval, beyond a crease or a seam.
     fn beyond(&self, x: f64, (low, high): (f64, f64)) -> Option<(f64, (f64, f64))> {
         let n = self.stops.len();
-        let stretch = |k: usize| (self.stops[k], self.stops[k + 1]);
+        let interval = |k: usize| (self.stops[k], self.stops[k + 1]);
         let at = |x: f64| self.stops.iter().position(|stop| *stop == x);
         if x == high {
-            at(high).filter(|k| k + 1 < n).map(|k| (x, stretch(k))).or(self.closed.then(|| (0.0, stretch(0))))
+            at(high).filter(|k| k + 1 < n).map(|k| (x, interval(k))).or(self.closed.then(|| (0.0, interval(0))))
         } else if x == low {
-            at(low).filter(|k| *k > 0).map(|k| (x, stretch(k - 1))).or(self.closed.then(|| (1.0, stretch(n - 2))))
+            at(low).filter(|k| *k > 0).map(|k| (x, interval(k - 1))).or(self.closed.then(|| (1.0, interval(n - 2))))
         } else {
             None
         }
@@ -174,7 +174,7 @@ impl Samples {
         apart.fold(0.0, f64::max).sqrt()
     }
 
-    /// The rectangles between creases in which a sample lies, as stretches of columns and rows.
+    /// The rectangles between creases in which a sample lies, as intervals of columns and rows.
     fn rectangles(&self, k: usize) -> impl Iterator<Item = (usize, usize)> {
         let (i, j) = (k % self.columns.at.len(), k / self.columns.at.len());
         self.rows.of(j).flat_map(move |r| self.columns.of(i).map(move |c| (c, r)))
@@ -248,8 +248,8 @@ impl Samples {
         minima
     }
 
-    /// Where a sample is one of a pole, at which samples beside one another in a row or column coincide (all of them, or a stretch):
-    /// the local minima of the rows beside, and the samples next to the stretch. From the pole itself no descent can turn into the
+    /// Where a sample is one of a pole, at which samples beside one another in a row or column coincide (all of them, or an interval):
+    /// the local minima of the rows beside, and the samples next to the interval. From the pole itself no descent can turn into the
     /// direction that leads to the point. The samples of the pole are added to `poles`.
     fn round_pole(&self, k: usize, far: &impl Fn(usize) -> f64, poles: &mut Vec<usize>) -> Vec<usize> {
         let (nx, ny) = self.size();

@@ -1,4 +1,4 @@
-//! Nearest points of swept surfaces: one of a profile carried straight or turned about an axis is that of its profile, seen along
+//! Nearest points of swept surfaces: one of a profile extruded or turned about an axis is that of its profile, seen along
 //! the way. Curves find theirs by bounds, so that no other sheet of the surface is taken however near it lies.
 
 use std::f64::consts::TAU;

@@ -16,12 +16,15 @@ impl Surface {
     /// Interior values of u (first) and v (second) where the surface is less than analytic: kinks, network lines, joints
     /// and knots of the curves, ascending. Between them quadrature and bounds behave.
     pub fn breaks(&self) -> (Vec<f64>, Vec<f64>) {
-        let (us, vs) = self.parts().shape.breaks();
-        let turned = |list: &[f64]| list.iter().rev().map(|x| 1.0 - x).collect();
+        self.own_lines(self.parts().shape.breaks())
+    }
+
+    /// The lines of the shape in the surface's own parameters.
+    fn own_lines(&self, (us, vs): (Vec<f64>, Vec<f64>)) -> (Vec<f64>, Vec<f64>) {
         match (self.parts().flipped, self.ground()) {
             (false, _) => (us, vs),
             (true, Domain::Triangle) => (vs, us),
-            (true, _) => (us, turned(&vs)),
+            (true, _) => (us, vs.iter().rev().map(|v| 1.0 - v).collect()),
         }
     }
 
@@ -37,15 +40,9 @@ impl Surface {
         field.pieces().iter().map(|piece| piece.corners.map(turn)).collect()
     }
 
-    /// Ends of the cells that a review samples: network lines and kinks (of a net: knots), inner ones, u first.
+    /// Ends of the cells that the report samples: network lines and kinks (of a net: knots), inner ones, u first.
     pub fn cells(&self) -> (Vec<f64>, Vec<f64>) {
-        let (us, vs) = self.parts().shape.cells();
-        let turned = |list: &[f64]| list.iter().rev().map(|x| 1.0 - x).collect();
-        match (self.parts().flipped, self.ground()) {
-            (false, _) => (us, vs),
-            (true, Domain::Triangle) => (vs, us),
-            (true, _) => (us, turned(&vs)),
-        }
+        self.own_lines(self.parts().shape.cells())
     }
 
     /// Shares of the way along a straight line between two (u, v) at which it crosses one of [`Surface::breaks`], ascending, 0 and 1 left out.

@@ -1,7 +1,7 @@
 //! Trimmed nets that run at very uneven speed, in parameters in which they run evenly: what a mesher is given.
 //!
 //! A net may run through a tenth of its length in a thousandth of its range. Triangles that are straight in its parameters are bent in space
-//! there, and bounds over boxes of them tell nothing. Each parameter that does so is a monotone function of a new one: quadratic between some
+//! there, and bounds over boxes of them say nothing. Each parameter that does so is a monotone function of a new one: quadratic between some
 //! stops, with a slope of one over the speed at each of them. In the new one the same surface is a net of twice the degree, exactly.
 
 use std::sync::Arc;

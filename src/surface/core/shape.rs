@@ -28,13 +28,13 @@ pub enum Shape {
     Blend(Blend),
     /// Blended from three borders.
     Trilateral(Trilateral),
-    /// A profile carried along a path.
+    /// A profile translated or turned along a path.
     Sweep(Sweep),
     /// A plane over its frame.
     Plane(Frame),
     /// A net.
     Nurbs(NurbsSurface),
-    /// A profile carried with a frame.
+    /// A profile moved with a frame.
     Framed(Framed),
     /// A height over triangles.
     Scatter(Field),
@@ -133,7 +133,7 @@ impl Shape {
         }
     }
 
-    /// Interior ends of the cells in which a review samples.
+    /// Interior ends of the cells in which the report samples.
     pub fn cells(&self) -> (Vec<f64>, Vec<f64>) {
         match self {
             Self::Blend(s) => s.cells(),

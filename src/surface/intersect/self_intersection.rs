@@ -117,7 +117,7 @@ impl<'a> Search<'a> {
     fn crossing(&mut self) -> Option<Crossing> {
         let roots = self.roots.clone();
         let face = |search: &Self, k: usize| search.parts[k].face;
-        // What a face does with itself first: faces side by side take long to tell apart.
+        // What a face does with itself first: faces side by side take long to separate.
         for (k, i) in roots.iter().enumerate() {
             if self.alone(*i).is_err() {
                 return self.found;

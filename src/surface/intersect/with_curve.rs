@@ -84,7 +84,7 @@ fn with_one(chain: &Chain, surface: &Surface, tolerance: &Tolerance) -> Result<V
     }
     let near = tolerance.point / length;
     let mut out = Vec::new();
-    for (from, to) in kept_overlaps(chain, surface, united(overlaps, near), tolerance)? {
+    for (from, to) in kept_intervals(chain, surface, united(overlaps, near), tolerance)? {
         let uv = closest(surface, chain.point(from)).uv;
         out.push(SurfaceMeeting { point: chain.point(from), f: from, uv, shared_to: Some(to) });
     }
@@ -114,7 +114,7 @@ fn on_patch(curve: &Curve, patch: Patch, tolerance: &Tolerance) -> Result<Vec<Co
     })
 }
 
-/// Overlaps that touch or overlap as one, ascending.
+/// Overlaps that touch or share a part as one, ascending.
 fn united(mut overlaps: Vec<(f64, f64)>, near: f64) -> Vec<(f64, f64)> {
     overlaps.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut out: Vec<(f64, f64)> = Vec::new();
@@ -144,10 +144,15 @@ fn distinct(mut points: Vec<Touch>, length: f64, tolerance: &Tolerance) -> Vec<T
     kept
 }
 
-/// The parts of overlaps that lie in the kept part of a trimmed surface.
-pub(crate) fn kept_overlaps(chain: &Chain, surface: &Surface, overlaps: Vec<(f64, f64)>, tolerance: &Tolerance) -> Result<Vec<(f64, f64)>> {
+/// The parts of intervals of a chain that lie in the kept part of a trimmed surface.
+pub(crate) fn kept_intervals(
+    chain: &Chain,
+    surface: &Surface,
+    intervals: Vec<(f64, f64)>,
+    tolerance: &Tolerance,
+) -> Result<Vec<(f64, f64)>> {
     if surface.domain() != Domain::Loop {
-        return Ok(overlaps);
+        return Ok(intervals);
     }
     let mut cuts = Vec::new();
     for k in 0..surface.n_sides() {
@@ -162,7 +167,7 @@ pub(crate) fn kept_overlaps(chain: &Chain, surface: &Surface, overlaps: Vec<(f64
     let mut out: Vec<(f64, f64)> = Vec::new();
     let near = tolerance.point / chain.length();
     let below = Nearest::new(&surface.untrimmed());
-    for (from, to) in overlaps {
+    for (from, to) in intervals {
         let inner = cuts.iter().copied().filter(|f| *f > from + near && *f < to - near);
         let stops: Vec<f64> = std::iter::once(from).chain(inner).chain(std::iter::once(to)).collect();
         for w in stops.windows(2) {

@@ -91,7 +91,7 @@ impl Rim {
         let (reversed, apart) = match (one(a, c) && one(b, d), one(a, d) && one(b, c)) {
             (false, false) if self.closed && other.closed => (self.runs_against(other), true),
             (false, false) => return None,
-            // Closed: a quarter of the way tells.
+            // Closed: a quarter of the way decides.
             (true, true) => {
                 let (p, q) = (self.points[STEPS / 4], [other.points[STEPS / 4], other.points[STEPS - STEPS / 4]]);
                 (p.distance(q[1]) < p.distance(q[0]), false)

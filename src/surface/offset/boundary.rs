@@ -78,52 +78,57 @@ pub(crate) fn whole(surface: &Surface, tolerance: &Tolerance) -> Surface {
 }
 
 /// The borders of all loops of a face, loop by loop; `None` for poles and for seams, across which the face goes on.
-pub(crate) fn boundaries(surface: &Surface, walks: &[TrimLoop], tolerance: &Tolerance) -> Vec<Vec<Option<Boundary>>> {
+pub(crate) fn boundaries(surface: &Surface, trim_loops: &[TrimLoop], tolerance: &Tolerance) -> Vec<Vec<Option<Boundary>>> {
     let below = whole(surface, tolerance);
-    let each = |walk: &TrimLoop| {
-        let seams = seams(surface, &below, walk);
+    let each = |trim_loop: &TrimLoop| {
+        let seams = seams(surface, &below, trim_loop);
         let one = |k: usize| {
-            let pole = matches!(walk.borders[k].side, Side::Pole(_));
-            (!pole && !seams[k]).then(|| Boundary::of(&below, walk, k))
+            let pole = matches!(trim_loop.borders[k].side, Side::Pole(_));
+            (!pole && !seams[k]).then(|| Boundary::of(&below, trim_loop, k))
         };
-        (0..walk.borders.len()).map(one).collect()
+        (0..trim_loop.borders.len()).map(one).collect()
     };
-    walks.iter().map(each).collect()
+    trim_loops.iter().map(each).collect()
 }
 
 /// The chains of the borders of a face; neither poles nor seams, across which the face goes on.
 pub(crate) fn border_chains(surface: &Surface, tolerance: &Tolerance) -> Result<Vec<Chain>> {
     let below = whole(surface, tolerance);
     let mut all = Vec::new();
-    for walk in natural(surface, tolerance)? {
-        let seams = seams(surface, &below, &walk);
+    for trim_loop in natural(surface, tolerance)? {
+        let seams = seams(surface, &below, &trim_loop);
         let chain = |(border, seam): (&Border, bool)| match &border.side {
             Side::Chain { chain, .. } if !seam => Some(chain.clone()),
             _ => None,
         };
-        all.extend(walk.borders.iter().zip(seams).filter_map(chain));
+        all.extend(trim_loop.borders.iter().zip(seams).filter_map(chain));
     }
     Ok(all)
 }
 
 /// Which borders of a loop are seams across which the face goes on: its loop runs along both sides of them.
-fn seams(surface: &Surface, below: &Surface, walk: &TrimLoop) -> Vec<bool> {
+fn seams(surface: &Surface, below: &Surface, trim_loop: &TrimLoop) -> Vec<bool> {
     let closed = surface.closed();
-    let on_seam = |k: usize| !matches!(walk.borders[k].side, Side::Pole(_)) && walk.trim_curves[k].is_seam(closed);
-    let middle = |k: usize| Boundary::of(below, walk, k).jet(0.5, false).map(|jet| jet.p);
+    let on_seam = |k: usize| !matches!(trim_loop.borders[k].side, Side::Pole(_)) && trim_loop.trim_curves[k].is_seam(closed);
+    let middle = |k: usize| Boundary::of(below, trim_loop, k).jet(0.5, false).map(|jet| jet.p);
     let near = |j: usize, k: usize| {
         let apart = middle(j).zip(middle(k)).map(|(a, b)| a.distance(b));
         apart.is_some_and(|apart| apart <= BESIDE * surface.hull().diagonal())
     };
-    let n = walk.borders.len();
+    let n = trim_loop.borders.len();
     let partner = |k: usize| (0..n).any(|j| j != k && on_seam(j) && near(j, k));
-    (0..n).map(|k| on_seam(k) && (matches!(walk.borders[k].side, Side::Seam) || partner(k))).collect()
+    (0..n).map(|k| on_seam(k) && (matches!(trim_loop.borders[k].side, Side::Seam) || partner(k))).collect()
 }
 
 impl Boundary {
     /// Border `k` of a loop of the face over a surface.
-    fn of(below: &Surface, walk: &TrimLoop, k: usize) -> Self {
-        Self { surface: below.clone(), side: walk.borders[k].side.clone(), trim_curve: walk.trim_curves[k].clone(), part: (0.0, 1.0) }
+    fn of(below: &Surface, trim_loop: &TrimLoop, k: usize) -> Self {
+        Self {
+            surface: below.clone(),
+            side: trim_loop.borders[k].side.clone(),
+            trim_curve: trim_loop.trim_curves[k].clone(),
+            part: (0.0, 1.0),
+        }
     }
 
     /// Parameters along the border, ends included, between which it has no corner.

@@ -26,17 +26,17 @@ use crate::surface::trims::trim_loop::{TrimLoop, assembled, natural};
 
 /// The offset of a trimmed surface whose surface below has no creases, with the copies of its borders, loop by loop.
 pub(crate) fn trimmed(surface: &Surface, distance: f64, origin: Origin, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
-    let walks = natural(surface, tolerance)?;
+    let trim_loops = natural(surface, tolerance)?;
     let each = |boundary: &Option<Boundary>| boundary.as_ref().map(|boundary| boundary.copy(distance, origin, tolerance)).transpose();
     let copies: Vec<Vec<Option<Chain>>> =
-        boundaries(surface, &walks, tolerance).iter().map(|row| row.iter().map(each).collect::<Result<_>>()).collect::<Result<_>>()?;
-    with_loops(surface, &walks, &copies, distance, origin, tolerance)
+        boundaries(surface, &trim_loops, tolerance).iter().map(|row| row.iter().map(each).collect::<Result<_>>()).collect::<Result<_>>()?;
+    with_loops(surface, &trim_loops, &copies, distance, origin, tolerance)
 }
 
 /// The same with the copies of its borders at that distance given.
 pub(crate) fn with_loops(
     surface: &Surface,
-    walks: &[TrimLoop],
+    trim_loops: &[TrimLoop],
     copies: &[Vec<Option<Chain>>],
     distance: f64,
     origin: Origin,
@@ -46,7 +46,7 @@ pub(crate) fn with_loops(
     let (ground, notes) = offset(&below, distance, origin, tolerance)?;
     let ground = ground.untrimmed();
     let carrier = Carrier { below: &below, ground: &ground, distance, tolerance };
-    let loops: Result<Vec<TrimLoop>> = walks.iter().zip(copies).map(|(walk, row)| carrier.walk(walk, row)).collect();
+    let loops: Result<Vec<TrimLoop>> = trim_loops.iter().zip(copies).map(|(trim_loop, row)| carrier.trim_loop(trim_loop, row)).collect();
     Ok((assembled(&ground, loops?, origin)?, notes))
 }
 
@@ -73,9 +73,9 @@ impl Carrier<'_> {
         found + DVec2::new(turns(closed_u, uv.x, found.x), turns(closed_v, uv.y, found.y))
     }
 
-    fn walk(&self, walk: &TrimLoop, copies: &[Option<Chain>]) -> Result<TrimLoop> {
+    fn trim_loop(&self, trim_loop: &TrimLoop, copies: &[Option<Chain>]) -> Result<TrimLoop> {
         let mut made = TrimLoop { borders: Vec::new(), trim_curves: Vec::new(), chains: Vec::new() };
-        for ((border, trim_curve), copy) in walk.borders.iter().zip(&walk.trim_curves).zip(copies) {
+        for ((border, trim_curve), copy) in trim_loop.borders.iter().zip(&trim_loop.trim_curves).zip(copies) {
             let places = trim_curve.places();
             let (first, last) = (places[0], places[places.len() - 1]);
             let Some(chain) = copy else {

@@ -39,9 +39,9 @@ pub fn thicken(surface: &Surface, (below, above): (f64, f64), origin: Origin, to
         let rims = ruled_rims((&inner, &outer), origin, tolerance, &mut notes)?;
         return Ok(([outer, inner.flipped()].into_iter().chain(rims).collect(), notes));
     }
-    let walks = natural(surface, tolerance)?;
+    let trim_loops = natural(surface, tolerance)?;
     let (mut low, mut high, mut rims): (Copies, Copies, Vec<Surface>) = (Vec::new(), Vec::new(), Vec::new());
-    for row in boundaries(surface, &walks, tolerance) {
+    for row in boundaries(surface, &trim_loops, tolerance) {
         let made =
             row.iter().map(|boundary| boundary.as_ref().map(|boundary| rim(boundary, (below, above), origin, tolerance)).transpose());
         let made: Vec<Option<Rim>> = made.collect::<Result<_>>()?;
@@ -53,7 +53,7 @@ pub fn thicken(surface: &Surface, (below, above): (f64, f64), origin: Origin, to
         if distance == 0.0 || surface.parts().trim.is_none() {
             return moved(surface, distance, origin, tolerance);
         }
-        with_loops(surface, &walks, copies, distance, origin, tolerance)
+        with_loops(surface, &trim_loops, copies, distance, origin, tolerance)
     };
     let ((inner, mut notes), (outer, more)) = (side(below, &low)?, side(above, &high)?);
     notes.extend(more);
@@ -172,7 +172,7 @@ pub fn thicken_all(
     }
     let mut sheet = Sheet::new(faces, near, origin, tolerance)?;
     let closed = sheet.joints.iter().all(|joint| joint.bend != Bend::Free);
-    // Which side of one piece is that of another one is not told by either.
+    // Which side of one piece is that of another one follows from neither.
     if below != -above
         && let Some(second) = sheet.second_piece()
     {

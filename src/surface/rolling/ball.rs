@@ -92,8 +92,8 @@ impl Ball {
                 ([false, true], _) => Ok(-1.0),
                 (_, Some((start, to))) => {
                     let ahead = to.dot(start.out[k]);
-                    let tells = ahead.abs() > self.tolerance.point;
-                    tells
+                    let decides = ahead.abs() > self.tolerance.point;
+                    decides
                         .then_some(ahead.signum())
                         .ok_or_else(|| self.fault(NoBlend::KeepOnEdge { surface: self.origins[k], at: start.at }))
                 }

@@ -209,10 +209,10 @@ fn poles(s: &Station, radius: f64) -> [(DVec4, DVec4); 3] {
     let rate = s.rates[0] + s.rates[1] - s.way * 2.0;
     let length = middle.length();
     let weight = length / (2.0 * radius);
-    let stretch = middle.dot(rate) / length;
-    let weight_rate = stretch / (2.0 * radius);
+    let length_rate = middle.dot(rate) / length;
+    let weight_rate = length_rate / (2.0 * radius);
     let apex = s.center * weight + middle * (radius / length);
-    let apex_rate = s.center * weight_rate + s.way * weight + (rate - middle * (stretch / length)) * (radius / length);
+    let apex_rate = s.center * weight_rate + s.way * weight + (rate - middle * (length_rate / length)) * (radius / length);
     let foot = |k: usize| (s.feet[k].extend(1.0), s.rates[k].extend(0.0));
     [foot(0), (apex.extend(weight), apex_rate.extend(weight_rate)), foot(1)].map(|(p, d)| (p, d / s.speed()))
 }

@@ -15,8 +15,8 @@ const BETWEEN: usize = 32;
 
 /// Halvings in search of one with which surfaces can be made, where the largest ball that fits makes none; each makes them.
 const MADE: usize = 12;
-/// Share of a radius that is told, at the least: three digits of it, rounded down.
-const TOLD: f64 = 1.0 - 1.0 / 1024.0;
+/// Share of a radius that is stated, at the least: three digits of it, rounded down.
+const STATED: f64 = 1.0 - 1.0 / 1024.0;
 
 /// Share of a radius from which on a smaller one is searched, where its balls are found and the rounding is not.
 const FROM: f64 = 0.5;
@@ -42,8 +42,8 @@ pub(crate) fn stations(ball: &Ball, radius: f64, origin: Origin, is_made: impl F
             if ball.stations(middle).is_ok() { low = middle } else { high = middle }
         }
         let makes = |radius: f64| of(radius).is_ok_and(|all| is_made(all, radius));
-        if !makes(low * TOLD) {
-            let (mut made, mut not) = (0.0, low * TOLD);
+        if !makes(low * STATED) {
+            let (mut made, mut not) = (0.0, low * STATED);
             for _ in 0..MADE {
                 let middle = 0.5 * (made + not);
                 if makes(middle) { made = middle } else { not = middle }

@@ -303,7 +303,7 @@ mod tests {
             us.iter().for_each(|&u| assert!(at(u, x).distance(f(u, x)) < 1e-15));
             vs.iter().for_each(|&v| assert!(at(x, v).distance(f(x, v)) < 1e-15));
         }
-        // The reference has exact end slopes, which no net tells; both are near the surface the net was taken from.
+        // The reference has exact end slopes, which no net has; both are near the surface the net was taken from.
         for (u, v, z) in [(0.15, 0.25, 0.2749839308201486), (0.5, 0.75, 0.36282226268018547), (0.85, 0.4, 0.8184562035105998)] {
             assert!((at(u, v).z - z).abs() < 2e-4, "{}", at(u, v).z - z);
         }

@@ -1,6 +1,6 @@
 //! The cubic triangle [Clough & Tocher 1965]: three cubics about the centre of a triangle that meet its corners with their
 //! gradients. Towards the centre of the neighbour the slope is linear along each side: neighbours are C1, quadratics are reproduced,
-//! and a short side does not carry its steepness through a long triangle, as slopes at right angles to it would.
+//! and a short side does not pass its steepness on through a long triangle, as slopes at right angles to it would.
 
 use glam::DVec2;
 

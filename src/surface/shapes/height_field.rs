@@ -44,7 +44,7 @@ impl Rim {
 }
 
 /// Bézier ordinates of a part of a curve, by the blossom [Ramshaw 1989].
-fn stretch<const N: usize>(ordinates: [f64; N], from: f64, to: f64) -> [f64; N] {
+fn restricted<const N: usize>(ordinates: [f64; N], from: f64, to: f64) -> [f64; N] {
     std::array::from_fn(|k| {
         let mut row = ordinates;
         for (step, left) in (1..N).rev().enumerate() {
@@ -285,7 +285,7 @@ impl Field {
     fn outside(&self, rim: &Rim, corners: &[DVec2; 4], far: f64) -> Heights {
         let piece = &self.pieces[rim.piece];
         let (t, n) = (rim.along, -rim.along.perp());
-        // The stretch of the side that is nearest to places of the rectangle.
+        // The part of the side that is nearest to places of the rectangle.
         let along_it = corners.map(|p| rim.foot(p) / rim.length);
         let (from, to) = along_it.into_iter().fold((1.0, 0.0), |(a, b): (f64, f64), s| (a.min(s), b.max(s)));
         // Along a side the height is cubic and its slope across linear: second derivatives lie between those at the ends.
@@ -298,7 +298,7 @@ impl Field {
         let (a, b) = (bend(0).lerp(bend(1), from), bend(0).lerp(bend(1), to));
         let (along, across) = (Interval::between(a.x, b.x), Interval::between(a.y, b.y));
         let slopes = piece.side_slopes().map(|d| d / self.size);
-        let slope = |axis: usize| hull(stretch(slopes.map(|d| d[axis]), from, to));
+        let slope = |axis: usize| hull(restricted(slopes.map(|d| d[axis]), from, to));
         let depth = Interval { low: 0.0, high: far };
         let d1 = [0, 1].map(|k| slope(k) + across * depth * t[k]);
         let d2 =
@@ -307,7 +307,7 @@ impl Field {
         let feet = [from, to].map(|s| rim.ends[0].lerp(rim.ends[1], s));
         let arms = corners.iter().flat_map(|p| feet.map(|foot| *p - foot));
         let arm = |k: usize| arms.clone().map(|d| Interval::at(d[k])).fold(Interval::at(0.0), Interval::union);
-        let h = hull(stretch(piece.side_heights(), from, to)) + slope(0) * arm(0) + slope(1) * arm(1);
+        let h = hull(restricted(piece.side_heights(), from, to)) + slope(0) * arm(0) + slope(1) * arm(1);
         let (w, l) = (self.size.x, self.size.y);
         Heights { h, d1: [d1[0] * w, d1[1] * l], d2: [d2[0] * (w * w), d2[1] * (w * l), d2[2] * (l * l)] }
     }

@@ -1,6 +1,6 @@
 //! Matrices that depend on one parameter: polynomials between stops, fitted once to rounding.
 //!
-//! A piece of degree 8 meets the function in the nine Chebyshev points of its stretch, ends included; stretches are halved
+//! A piece of degree 8 meets the function in the nine Chebyshev points of its interval, ends included; intervals are halved
 //! until what is checked between them agrees.
 
 use glam::{DMat3, DVec3};
@@ -13,7 +13,7 @@ use crate::surface::data::one_sided::OneSided;
 
 /// Degree of a fitted piece.
 const DEGREE: usize = 8;
-/// A stretch is halved this often, at most.
+/// An interval is halved this often, at most.
 const DEPTH: usize = 12;
 
 /// Coefficients of the powers of x, −1…1 over the piece.
@@ -29,7 +29,7 @@ pub struct Matrices {
 /// A matrix and its first two derivatives: values at one parameter.
 pub type At = [DMat3; 3];
 
-/// The same over a stretch: bounds of the columns, then of those of both derivatives.
+/// The same over an interval: bounds of the columns, then of those of both derivatives.
 pub type Over = [[Interval3; 3]; 3];
 
 impl StableHash for Matrices {
@@ -48,9 +48,9 @@ impl Matrices {
         Self { stops: Vec::new(), pieces: Vec::new() }
     }
 
-    /// Appends the stretch `a…b`, which goes on from the last one. False where no polynomial fits.
+    /// Appends the interval `a…b`, which goes on from the last one. False where no polynomial fits.
     ///
-    /// `of` gives the matrix at ascending parameters: it is asked for one stretch after the other, each from left to right.
+    /// `of` gives the matrix at ascending parameters: it is asked for one interval after the other, each from left to right.
     pub fn fit(&mut self, (a, b): (f64, f64), of: &mut dyn FnMut(f64) -> DMat3) -> bool {
         if self.stops.is_empty() {
             self.stops.push(a);
@@ -126,7 +126,7 @@ impl Matrices {
             .all(|piece| piece.iter().enumerate().all(|(k, m)| largest(*m - if k == 0 { DMat3::IDENTITY } else { DMat3::ZERO }) == 0.0))
     }
 
-    /// Largest stretch of a vector, at most: the largest sum of squares of all entries.
+    /// Largest factor by which a vector gets longer, at most: the largest sum of squares of all entries.
     pub fn reach(&self) -> f64 {
         let norm = |m: &DMat3| (m.x_axis.length_squared() + m.y_axis.length_squared() + m.z_axis.length_squared()).sqrt();
         self.pieces.iter().map(|piece| piece.iter().map(norm).sum()).fold(0.0, f64::max)

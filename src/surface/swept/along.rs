@@ -39,7 +39,7 @@ pub struct Settings {
     pub origin: Origin,
 }
 
-/// The surface that a profile leaves that is carried along a path, staying as it stands to the path's direction.
+/// The surface of a profile that moves along a path, staying as it stands to the path's direction.
 ///
 /// u runs along the path, v along the profile, both by arc length. At corners of the path the surface is cut by the
 /// bisecting plane, or the profile is turned about the corner, and then u goes on as far as its farthest point moves. A straight path gives the extruded surface, an arc the revolved one. Returns W639 where it folds.

@@ -1,4 +1,4 @@
-//! `sweep`: sections carried along guides by a law.
+//! `sweep`: sections swept along guides by a law.
 
 use glam::DVec3;
 

@@ -56,7 +56,7 @@ pub struct SweepNet {
     pub notes: Vec<Fault>,
 }
 
-/// Makes the net, or tells which guide is too short for it.
+/// Makes the net, or says which guide is too short for it.
 pub fn net(
     sections: &[Chain],
     guides: &[Guide],
@@ -183,7 +183,7 @@ fn stations(main: &mut Main, guides: &[Guide], sections: &[Section], law: Law, c
     for (j, guide) in guides.iter().enumerate().skip(1) {
         let corners = guide.chain.kinks(tolerance);
         for f in guide.breaks(tolerance) {
-            let w = if law == Law::Synchronized { divided.on_main(j, f) } else { main.carried(guide.chain.point(f)).unwrap_or(-1.0) };
+            let w = if law == Law::Synchronized { divided.on_main(j, f) } else { main.fraction_of(guide.chain.point(f)).unwrap_or(-1.0) };
             if corners.iter().any(|c| (c - f).abs() <= NUDGE) { offer(w) } else { knots.push(w) }
         }
     }

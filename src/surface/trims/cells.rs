@@ -123,8 +123,8 @@ impl<'a> Cells<'a> {
         let twins = self.twins.clone();
         self.twins.retain(|k, (other, _)| twins.get(other).is_some_and(|back| back.0 == *k));
         // A part of a closed surface may have one side of a seam only; the whole has both.
-        let lone = seams.into_iter().find(|k| self.base.domain() != Domain::Loop && !self.twins.contains_key(k));
-        lone.map_or(Ok(()), |k| Err(self.fault("a seam has one side", (k, false))))
+        let single = seams.into_iter().find(|k| self.base.domain() != Domain::Loop && !self.twins.contains_key(k));
+        single.map_or(Ok(()), |k| Err(self.fault("a seam has one side", (k, false))))
     }
 
     fn fault(&self, what: &'static str, half: Half) -> Fault {

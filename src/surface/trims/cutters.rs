@@ -18,7 +18,7 @@ use crate::surface::faults::SurfaceFault;
 use crate::surface::rails::side::{Border, Side, between};
 use crate::surface::rails::trim_curve::{Pcurve, TrimCurve};
 use crate::surface::trims::pcurve::{Off, is_pole};
-use crate::surface::trims::project::{Way, carried};
+use crate::surface::trims::project::{Way, project};
 use crate::surface::trims::shared_runs;
 use crate::surface::trims::trim_loop::{TrimLoop, natural};
 
@@ -86,11 +86,11 @@ pub(crate) enum Meets {
 /// Borders and cutters with the places where they part each other.
 pub(crate) fn dividing_curves(base: &Surface, cutters: &[Chain], meets: Meets, tolerance: &Tolerance) -> Result<Vec<DividingCurve>> {
     let mut all = Vec::new();
-    for walk in natural(base, tolerance)? {
-        let sides = walk.borders.len();
+    for trim_loop in natural(base, tolerance)? {
+        let sides = trim_loop.borders.len();
         for k in 0..sides {
-            let (border, trim_curve) = (walk.borders[k].clone(), walk.trim_curves[k].clone());
-            let opposite = (sides == 4).then(|| walk.borders[(k + 2) % 4].turned());
+            let (border, trim_curve) = (trim_loop.borders[k].clone(), trim_loop.trim_curves[k].clone());
+            let opposite = (sides == 4).then(|| trim_loop.borders[(k + 2) % 4].turned());
             all.push(of_border(base, border, trim_curve, opposite, tolerance)?);
         }
     }
@@ -144,7 +144,7 @@ pub(crate) fn of_border(
         && let TrimCurve::Line(a, b) = &trim_curve
     {
         let line = build::line(DVec3::new(a.0, a.1, 0.0), DVec3::new(b.0, b.1, 0.0), Origin::NONE)?;
-        chain = carried(base, &Chain::of_curve(&line), Way::Parameters, base.origin(), tolerance).ok().map(|c| Chain::of_curve(&c));
+        chain = project(base, &Chain::of_curve(&line), Way::Parameters, base.origin(), tolerance).ok().map(|c| Chain::of_curve(&c));
         is_drawn = true;
     }
     Ok(DividingCurve { chain, border: Some((border, trim_curve)), seam: is_seam, cutter: None, is_drawn, cuts: Vec::new() })
@@ -255,7 +255,7 @@ pub(crate) fn within(base: &Surface, loops: &[TrimLoop], p: DVec3) -> Option<DVe
     if !bounded(base) {
         return Some(near.into());
     }
-    let inside = |at: &DVec2| loops.iter().map(|walk| walk.turning(base, *at)).sum::<f64>().abs() > std::f64::consts::PI;
+    let inside = |at: &DVec2| loops.iter().map(|trim_loop| trim_loop.turning(base, *at)).sum::<f64>().abs() > std::f64::consts::PI;
     base.copies(near).into_iter().find(inside)
 }
 
@@ -293,7 +293,7 @@ impl DividingBorder<'_> {
         };
         let p = (run.start(), run.point(MIDDLE), run.end());
         let off = |off: Off| outside(base, run, off, tolerance);
-        // From a pole the other end tells on which side of a seam the border runs.
+        // From a pole the other end decides on which side of a seam the border runs.
         let pcurve = if is_pole(base, about(from)) {
             Pcurve::follow(base, run, (1.0, 0.0), about(to), tolerance.point).map(|pcurve| pcurve.turned())
         } else {
@@ -354,7 +354,7 @@ fn at_pole(
     for piece in pieces {
         for last in [false, true] {
             let uv = if last { piece.uv.1 } else { piece.uv.0 };
-            // A pole may be as wide as the tolerance: where in (u, v) a piece ends tells whether it ends there.
+            // A pole may be as wide as the tolerance: where in (u, v) a piece ends decides whether it ends there.
             let share = (uv - a).dot(b - a) / (b - a).length_squared();
             if (uv - a.lerp(b, share)).length() > NUDGE {
                 continue;

@@ -36,7 +36,7 @@ pub fn divide(base: &Surface, cutters: &[Chain], keep: DVec3, origin: Origin, to
     let Some(face) = cells.face(foot)? else {
         return Err(CutFault::KeepOff { surface: base.origin(), at: keep, off: 0.0, on: None, tolerance: tolerance.point }.into());
     };
-    assembled(base, walks(&dividing.pieces, &face), origin)
+    assembled(base, trim_loops(&dividing.pieces, &face), origin)
 }
 
 /// All parts into which curves on a surface divide it, together with its own border; fails as [`divide`] does.
@@ -44,7 +44,7 @@ pub fn split(whole: &Surface, cutters: &[Chain], origin: Origin, tolerance: &Tol
     let base = &plane::unmapped(whole, tolerance)?;
     let dividing = dividing(base, cutters, Meets::Anywhere, tolerance)?;
     let cells = Cells::new(base, &dividing.pieces, &dividing.edges, tolerance)?;
-    let part = |face: &Face| Ok(assembled(base, walks(&dividing.pieces, face), origin)?.cut_from(std::slice::from_ref(whole)));
+    let part = |face: &Face| Ok(assembled(base, trim_loops(&dividing.pieces, face), origin)?.cut_from(std::slice::from_ref(whole)));
     let faces = cells.faces()?;
     undivided(base, &dividing, faces.len(), tolerance)?;
     faces.iter().map(part).collect()
@@ -169,14 +169,14 @@ fn graph(base: &Surface, all: &[Piece], tolerance: &Tolerance) -> (Vec<Edge>, Pl
             true => (share(ends.0), share(ends.1)),
             false => (START, START),
         };
-        // From the place of the vertex: where pieces leave a run that they share, only what they are off it tells them apart.
+        // From the place of the vertex: where pieces leave a run that they share, only what they are off it separates them.
         (place(first) - places[ends.0].0, place(1.0 - last) - places[ends.1].0)
     };
     let edges = all.iter().zip(ends).map(|(piece, ends)| Edge { ends, out: out(piece, &ends) }).collect();
     (edges, places)
 }
 
-/// How far from a vertex the pieces that leave it are apart, in space, so that their directions tell their order: pieces that touch or
+/// How far from a vertex the pieces that leave it are apart, in space, so that their directions give their order: pieces that touch or
 /// cross flatly may run within the tolerance of each other for long.
 fn apart_at(all: &[Piece], fan: &[(usize, bool)], length: &impl Fn(&Piece) -> f64, tolerance: &Tolerance) -> f64 {
     let shortest = fan.iter().map(|(k, _)| length(&all[*k])).fold(f64::INFINITY, f64::min);
@@ -259,24 +259,24 @@ const FARTHEST: f64 = 0.45;
 /// Places nearer in (u, v) than this may be one vertex: at a pole, elsewhere.
 const NEAR: (f64, f64) = (NUDGE, 0.1);
 
-/// The loops of a face as walks, the outer one first.
-pub(crate) fn walks(pieces: &[Piece], face: &Face) -> Vec<TrimLoop> {
-    let mut walks: Vec<TrimLoop> = face.iter().map(|row| walk(pieces, row)).collect();
-    walks.sort_by(|a, b| b.area2().abs().total_cmp(&a.area2().abs()));
-    walks
+/// The loops of a face, the outer one first.
+pub(crate) fn trim_loops(pieces: &[Piece], face: &Face) -> Vec<TrimLoop> {
+    let mut trim_loops: Vec<TrimLoop> = face.iter().map(|row| trim_loop(pieces, row)).collect();
+    trim_loops.sort_by(|a, b| b.area2().abs().total_cmp(&a.area2().abs()));
+    trim_loops
 }
 
-fn walk(pieces: &[Piece], row: &[((usize, bool), DVec2)]) -> TrimLoop {
-    let mut walk = TrimLoop { borders: Vec::new(), trim_curves: Vec::new(), chains: Vec::new() };
+fn trim_loop(pieces: &[Piece], row: &[((usize, bool), DVec2)]) -> TrimLoop {
+    let mut trim_loop = TrimLoop { borders: Vec::new(), trim_curves: Vec::new(), chains: Vec::new() };
     for ((k, backwards), by) in row {
         let piece = &pieces[*k];
         let (border, trim_curve): (Border, TrimCurve) =
             if *backwards { (piece.border.turned(), piece.trim_curve.turned()) } else { (piece.border.clone(), piece.trim_curve.clone()) };
         if let Side::Chain { chain, .. } = &border.side {
-            walk.chains.push(chain.clone());
+            trim_loop.chains.push(chain.clone());
         }
-        walk.borders.push(border);
-        walk.trim_curves.push(trim_curve.shifted(*by));
+        trim_loop.borders.push(border);
+        trim_loop.trim_curves.push(trim_curve.shifted(*by));
     }
-    walk
+    trim_loop
 }

@@ -47,11 +47,11 @@ impl Ring {
     }
 
     /// A loop that a surface has.
-    pub fn of_walk(base: &Surface, walk: &TrimLoop, outer: bool, tolerance: &Tolerance) -> Result<Self> {
+    pub fn of_trim_loop(base: &Surface, trim_loop: &TrimLoop, outer: bool, tolerance: &Tolerance) -> Result<Self> {
         let (mut chains, mut seams) = (Vec::new(), Vec::new());
-        let sides = walk.borders.len();
-        for (k, (border, trim_curve)) in walk.borders.iter().zip(&walk.trim_curves).enumerate() {
-            let opposite = (sides == 4).then(|| walk.borders[(k + 2) % 4].turned());
+        let sides = trim_loop.borders.len();
+        for (k, (border, trim_curve)) in trim_loop.borders.iter().zip(&trim_loop.trim_curves).enumerate() {
+            let opposite = (sides == 4).then(|| trim_loop.borders[(k + 2) % 4].turned());
             let curve = of_border(base, border.clone(), trim_curve.clone(), opposite, tolerance)?;
             if let Some(chain) = curve.chain {
                 if curve.seam { seams.push(chain) } else { chains.push(chain) }
@@ -193,7 +193,7 @@ impl TrimLoop {
         self.turning(base, p).abs() > std::f64::consts::PI
     }
 
-    /// A place and the same place whole turns round the surface away, as far as the walk reaches.
+    /// A place and the same place whole turns round the surface away, as far as the loop reaches.
     pub fn copies(&self, base: &Surface, p: DVec2) -> Vec<DVec2> {
         let (low, high) = reach(&self.trim_curves);
         let along = |closed: bool, axis: usize| if closed { within(p[axis], (low[axis], high[axis])) } else { vec![p[axis]] };
@@ -213,15 +213,15 @@ pub(crate) fn nested(
     holes: &[(usize, &TrimLoop)],
     touched: impl Fn(usize, usize) -> Option<DVec3>,
 ) -> Option<(usize, usize, DVec3)> {
-    let reaches: Vec<(DVec2, DVec2)> = holes.iter().map(|(_, walk)| reach(&walk.trim_curves)).collect();
+    let reaches: Vec<(DVec2, DVec2)> = holes.iter().map(|(_, trim_loop)| reach(&trim_loop.trim_curves)).collect();
     let near = |p: DVec2, (low, high): (DVec2, DVec2)| low.cmple(p).all() && p.cmple(high).all();
-    for (inner, walk) in holes {
-        let (first, _) = walk.place_off(base, None);
+    for (inner, trim_loop) in holes {
+        let (first, _) = trim_loop.place_off(base, None);
         for ((around, other), reach) in holes.iter().zip(&reaches) {
             if inner == around || !near(first, *reach) {
                 continue;
             }
-            let (place, at) = walk.place_off(base, touched(*inner, *around));
+            let (place, at) = trim_loop.place_off(base, touched(*inner, *around));
             if other.goes_round(base, place) {
                 return Some((*inner, *around, at));
             }

@@ -1,4 +1,4 @@
-//! Loops on closed surfaces that no polygon in (u, v) tells: over the seam of a whole surface, round a pole, round a tube. They
+//! Loops on closed surfaces that no polygon in (u, v) represents: over the seam of a whole surface, round a pole, round a tube. They
 //! divide the surface, and what they bound alone is the part without its border.
 
 use glam::{DVec2, DVec3};
@@ -104,8 +104,8 @@ fn beside(base: &Surface, chains: &[Chain], tolerance: &Tolerance) -> Option<[DV
 /// Places just inside the border of a surface, one for each side of it that is neither a seam nor a pole.
 fn border_places(base: &Surface, tolerance: &Tolerance) -> Result<Vec<DVec2>> {
     let mut found = Vec::new();
-    for walk in natural(base, tolerance)? {
-        for (border, trim_curve) in walk.borders.iter().zip(&walk.trim_curves) {
+    for trim_loop in natural(base, tolerance)? {
+        for (border, trim_curve) in trim_loop.borders.iter().zip(&trim_loop.trim_curves) {
             if matches!(border.side, Side::Pole(_)) || trim_curve.is_seam(base.closed()) {
                 continue;
             }

@@ -23,7 +23,7 @@ use crate::surface::rails::side::Side;
 use crate::surface::rails::trim_curve::TrimCurve;
 use crate::surface::trims::cells::Cells;
 use crate::surface::trims::cutters::{Meets, Piece};
-use crate::surface::trims::divide::{dividing, walks};
+use crate::surface::trims::divide::{dividing, trim_loops};
 use crate::surface::trims::trim_loop::{assembled, shifts};
 
 /// Where two curves are compared, as shares of their lengths.
@@ -74,7 +74,7 @@ pub struct Doubt {
 ///
 /// Where the surface closes loops may run along its seam twice, over it, round the surface and through poles; curves shorter than the
 /// tolerance are left out. The direction of the loops decides only where nothing else does. Where what decides speaks for both sides the
-/// larger share of it is followed, and told. Fails with E502 or E659 where a loop does not
+/// larger share of it is followed, and reported. Fails with E502 or E659 where a loop does not
 /// close, E612 where the loops bound nothing, E613 when a curve leaves the surface.
 pub fn outlined(
     base: &Surface,
@@ -97,7 +97,7 @@ pub fn outlined(
     let sides = Sides { base: &base, pieces: &dividing.pieces, cells: &cells, borders: &borders, known, tolerance };
     let Some((kept, doubts)) = sides.kept(&inner) else { return Err(sides.nothing(origin).into()) };
     let faces = cells.faces_of(&kept)?;
-    let made: Result<Vec<Surface>> = faces.iter().map(|face| assembled(&base, walks(&dividing.pieces, face), origin)).collect();
+    let made: Result<Vec<Surface>> = faces.iter().map(|face| assembled(&base, trim_loops(&dividing.pieces, face), origin)).collect();
     Ok((made?, doubts))
 }
 

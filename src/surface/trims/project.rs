@@ -1,4 +1,4 @@
-//! Curves carried to a surface: its points under a curve in (u, v), the feet of a curve in space, or where a curve meets
+//! Curves projected to a surface: its points under a curve in (u, v), the feet of a curve in space, or where a curve meets
 //! the surface along a direction. Curves in (u, v) of planes and nets are exact where their degree allows (`compose`); the
 //! others have no exact form in general: cubics within a quarter of the tolerance.
 
@@ -42,7 +42,7 @@ pub enum Way {
     Along(DVec3),
 }
 
-/// A place on the surface with the carried curve's point and derivative.
+/// A place on the surface with the projected curve's point and derivative.
 #[derive(Clone, Copy)]
 pub(crate) struct Spot {
     /// Where on the surface.
@@ -108,7 +108,7 @@ struct Carrier<'a> {
 ///
 /// Fails with E613 where the curve leaves the surface (its parameters, or the direction misses it), E413 where the result
 /// has a cusp.
-pub fn carried(surface: &Surface, chain: &Chain, way: Way, origin: Origin, tolerance: &Tolerance) -> Result<Curve> {
+pub fn project(surface: &Surface, chain: &Chain, way: Way, origin: Origin, tolerance: &Tolerance) -> Result<Curve> {
     let carrier = Carrier { surface, near: Nearest::new(surface), chain, way };
     let off = |at: DVec3, distance: f64| SurfaceFault::LoopOutsideSurface {
         of: chain.origin(),
@@ -142,7 +142,7 @@ fn long_enough(curve: Curve, tolerance: &Tolerance) -> Result<Curve> {
     Ok(curve)
 }
 
-/// Steps in which a stretch between stops is walked when nothing is known of the surface.
+/// Steps between two stops when nothing is known of the surface.
 const WALK: usize = 32;
 
 /// Stops with as many between each two.
@@ -152,7 +152,7 @@ fn walked(stops: &[f64]) -> Vec<f64> {
 }
 
 impl Carrier<'_> {
-    /// The carried point at a fraction of the chain, near a place when one is known; `before`: derivatives of the piece
+    /// The projected point at a fraction of the chain, near a place when one is known; `before`: derivatives of the piece
     /// that ends there. `None` where there is none. Over a seam (u, v) go on, so that what is between two places is near both.
     fn at(&self, f: f64, near: Option<DVec2>, before: bool) -> Option<Spot> {
         let found = self.landed(f, near, before)?;

@@ -32,31 +32,31 @@ pub fn trim(base: &Surface, outer: &[Chain], holes: &[Vec<Chain>], origin: Origi
         // As much of it as the loops need, with the frame that planes have.
         base = plane::over(&base, outer.iter().chain(holes.iter().flatten()).map(Chain::bbox).fold(Box3::EMPTY, Box3::union));
     }
-    let (mut walks, mut rings) = (Vec::new(), Vec::new());
+    let (mut trim_loops, mut rings) = (Vec::new(), Vec::new());
     if !outer.is_empty() {
-        let walk = around(&base, outer, LoopRole::Outer, tolerance)?;
-        if walk.winds(&base) {
+        let trim_loop = around(&base, outer, LoopRole::Outer, tolerance)?;
+        if trim_loop.winds(&base) {
             base = noncontractible(&base, outer, Keep::Inside, origin, tolerance)?.ok_or_else(|| goes_round(&base, outer, origin))?;
         } else {
             let ring = Ring::of_chains(outer, None, origin);
-            let kept = if unbounded { Vec::new() } else { kept_holes(&base, &ring, &walk, origin, tolerance)? };
-            (walks, rings) = (vec![walk], vec![ring]);
-            for (ring, walk) in kept {
+            let kept = if unbounded { Vec::new() } else { kept_holes(&base, &ring, &trim_loop, origin, tolerance)? };
+            (trim_loops, rings) = (vec![trim_loop], vec![ring]);
+            for (ring, trim_loop) in kept {
                 rings.push(ring);
-                walks.push(walk);
+                trim_loops.push(trim_loop);
             }
         }
     }
-    if walks.is_empty() {
-        walks = natural(&base, tolerance)?;
+    if trim_loops.is_empty() {
+        trim_loops = natural(&base, tolerance)?;
         if !holes.is_empty() {
-            rings = walks.iter().enumerate().map(|(k, w)| Ring::of_walk(&base, w, k == 0, tolerance)).collect::<Result<_>>()?;
+            rings = trim_loops.iter().enumerate().map(|(k, w)| Ring::of_trim_loop(&base, w, k == 0, tolerance)).collect::<Result<_>>()?;
         }
     }
     if holes.is_empty() {
-        return assembled(&base, walks, origin);
+        return assembled(&base, trim_loops, origin);
     }
-    Holes { base: &base, origin, tolerance }.cut(walks, rings, holes)
+    Holes { base: &base, origin, tolerance }.cut(trim_loops, rings, holes)
 }
 
 /// A plane face that knows no loops in (u, v) as one that does; any other surface as it is.
@@ -82,7 +82,7 @@ struct Holes<'a> {
 
 impl Holes<'_> {
     /// The face with these loops, the outer one first, without what the holes bound.
-    fn cut(&self, mut walks: Vec<TrimLoop>, mut rings: Vec<Ring>, holes: &[Vec<Chain>]) -> Result<Surface> {
+    fn cut(&self, mut trim_loops: Vec<TrimLoop>, mut rings: Vec<Ring>, holes: &[Vec<Chain>]) -> Result<Surface> {
         let (base, origin, tolerance) = (self.base, self.origin, self.tolerance);
         let new = rings.len();
         let mut cutting = Vec::with_capacity(holes.len());
@@ -97,26 +97,26 @@ impl Holes<'_> {
         let touched = |a: usize, b: usize| touches.get(&(a.min(b), a.max(b))).and_then(|t| t.places.first().copied());
         // Numbers of the loops that lie in (u, v) as they are, and of those that divide a closed surface.
         let (mut plain, mut apart): (Vec<usize>, Vec<usize>) = ((1..new).collect(), Vec::new());
-        let outline = walks.first().map(TrimLoop::copied);
-        for (k, walk) in cutting.into_iter().enumerate() {
+        let outline = trim_loops.first().map(TrimLoop::copied);
+        for (k, trim_loop) in cutting.into_iter().enumerate() {
             let ring = &rings[new + k];
-            let (place, at) = walk.place_off(base, touched(0, new + k));
-            let moved = match walks.first() {
-                _ if walk.winds(base) => None,
-                Some(outer) if shifts(base).len() > 1 => self.moved_inside(outer, &rings[0], ring, &walk, place)?,
+            let (place, at) = trim_loop.place_off(base, touched(0, new + k));
+            let moved = match trim_loops.first() {
+                _ if trim_loop.winds(base) => None,
+                Some(outer) if shifts(base).len() > 1 => self.moved_inside(outer, &rings[0], ring, &trim_loop, place)?,
                 Some(outer) => outer.holds_moved(base, place),
                 None => Some(DVec2::ZERO),
             };
             if let Some(by) = moved {
-                walks.push(walk.shifted(by));
+                trim_loops.push(trim_loop.shifted(by));
                 plain.push(new + k);
-            } else if shifts(base).len() > 1 && outline.as_ref().is_some_and(|outline| walk.lies_within(base, outline)) {
+            } else if shifts(base).len() > 1 && outline.as_ref().is_some_and(|outline| trim_loop.lies_within(base, outline)) {
                 apart.push(k);
             } else {
                 return Err(LoopFault::Outside { hole: ring.of, outer: rings[0].of, trimming: origin, at }.into());
             }
         }
-        let numbered: Vec<(usize, &TrimLoop)> = plain.iter().copied().zip(walks.iter().skip(1)).collect();
+        let numbered: Vec<(usize, &TrimLoop)> = plain.iter().copied().zip(trim_loops.iter().skip(1)).collect();
         let found = nested(base, &numbered, touched);
         let nested = |(inner, around, at): (usize, usize, DVec3)| -> Fault {
             LoopFault::Nested { inner: rings[inner].of, around: rings[around].of, trimming: origin, at }.into()
@@ -124,7 +124,7 @@ impl Holes<'_> {
         if let Some(found) = found {
             return Err(nested(found));
         }
-        let whole = assembled(base, walks.iter().take(1).map(TrimLoop::copied).collect(), origin)?;
+        let whole = assembled(base, trim_loops.iter().take(1).map(TrimLoop::copied).collect(), origin)?;
         for k in &apart {
             let within = noncontractible(&whole, &holes[*k], Keep::Inside, origin, tolerance)?
                 .ok_or_else(|| goes_round(base, &holes[*k], origin))?;
@@ -136,7 +136,7 @@ impl Holes<'_> {
                 }
             }
         }
-        let mut made = assembled(base, walks, origin)?;
+        let mut made = assembled(base, trim_loops, origin)?;
         for k in apart {
             made =
                 noncontractible(&made, &holes[k], Keep::Outside, origin, tolerance)?.ok_or_else(|| goes_round(base, &holes[k], origin))?;
@@ -145,14 +145,14 @@ impl Holes<'_> {
     }
 
     /// How far a loop on a closed surface must be moved in (u, v) to lie inside the outer one, if it does without crossing a seam.
-    fn moved_inside(&self, outer: &TrimLoop, border: &Ring, ring: &Ring, walk: &TrimLoop, place: DVec2) -> Result<Option<DVec2>> {
+    fn moved_inside(&self, outer: &TrimLoop, border: &Ring, ring: &Ring, trim_loop: &TrimLoop, place: DVec2) -> Result<Option<DVec2>> {
         if ring.crosses_seam(border, self.tolerance)? {
             return Ok(None);
         }
         let offsets = [DVec2::ZERO, DVec2::splat(NUDGE), DVec2::splat(-NUDGE), DVec2::new(NUDGE, -NUDGE), DVec2::new(-NUDGE, NUDGE)];
         let all = |by: &DVec2| {
             let inside = |p: DVec2| offsets.iter().any(|off| outer.goes_round(self.base, p + *by + *off));
-            inside(place) && walk.trim_curves.iter().flat_map(TrimCurve::places).all(inside)
+            inside(place) && trim_loop.trim_curves.iter().flat_map(TrimCurve::places).all(inside)
         };
         Ok(outer.copies(self.base, place).into_iter().map(|at| at - place).find(all))
     }
@@ -168,23 +168,23 @@ fn place_of(ring: &Ring, touched: Option<DVec3>) -> DVec3 {
 /// E502 of a hole that is one open curve, with the other ones that it closes with.
 fn together(fault: Fault, holes: &[Vec<Chain>], tolerance: &Tolerance) -> Fault {
     let Some(LoopFault::Open { of, ends, closes, role, .. }) = fault.of() else { return fault };
-    let lone: Vec<Chain> = holes.iter().filter(|h| h.len() == 1 && !h[0].is_closed(tolerance)).map(|h| h[0].clone()).collect();
-    if lone.len() < 2 || boundary::walked(&lone, LoopRole::Plane, tolerance).is_err() {
+    let open: Vec<Chain> = holes.iter().filter(|h| h.len() == 1 && !h[0].is_closed(tolerance)).map(|h| h[0].clone()).collect();
+    if open.len() < 2 || boundary::walked(&open, LoopRole::Plane, tolerance).is_err() {
         return fault;
     }
-    let together = lone.iter().map(Chain::origin).collect();
+    let together = open.iter().map(Chain::origin).collect();
     LoopFault::Open { of: *of, ends: *ends, closes: *closes, role: *role, together, tolerance: tolerance.point }.into()
 }
 
 /// Where an outer loop lies on a surface that has loops already: E613 where it leaves it, else the holes that lie inside it.
-fn kept_holes(base: &Surface, ring: &Ring, walk: &TrimLoop, origin: Origin, tolerance: &Tolerance) -> Result<Vec<(Ring, TrimLoop)>> {
+fn kept_holes(base: &Surface, ring: &Ring, trim_loop: &TrimLoop, origin: Origin, tolerance: &Tolerance) -> Result<Vec<(Ring, TrimLoop)>> {
     if base.parts().trim.is_none() && base.domain() != Domain::Loop {
         return Ok(Vec::new());
     }
     let own = natural(base, tolerance)?;
     let mut rings = vec![Ring::of_chains(&ring.chains, None, origin)];
-    for (k, walk) in own.iter().enumerate() {
-        rings.push(Ring::of_walk(base, walk, k == 0, tolerance)?);
+    for (k, trim_loop) in own.iter().enumerate() {
+        rings.push(Ring::of_trim_loop(base, trim_loop, k == 0, tolerance)?);
     }
     // The outer loop is the new one: it comes last.
     rings.rotate_left(1);
@@ -206,18 +206,18 @@ fn kept_holes(base: &Surface, ring: &Ring, walk: &TrimLoop, origin: Origin, tole
         let crosses = touch.filter(|t| t.is_crossing());
         let off = |p: DVec3| ring.chains.iter().all(|c| c.closest(p).2 > 2.0 * tolerance.point);
         if let Some(touch) = crosses {
-            let inside = |(_, p): &(&Chain, DVec3)| off(*p) && walk.holds_moved(base, foot(*p)).is_some();
+            let inside = |(_, p): &(&Chain, DVec3)| off(*p) && trim_loop.holds_moved(base, foot(*p)).is_some();
             if middles(&rings[k].chains, touch.cuts.0.clone()).iter().any(inside) {
                 return Err(crossing((&rings[k], ring), touch, origin, tolerance).into());
             }
-        } else if let Some(by) = walk.holds_moved(base, hole.place_off(base, touch.and_then(|t| t.places.first().copied())).0) {
-            kept.push((Ring::of_walk(base, &hole, false, tolerance)?, hole.shifted(-by)));
+        } else if let Some(by) = trim_loop.holds_moved(base, hole.place_off(base, touch.and_then(|t| t.places.first().copied())).0) {
+            kept.push((Ring::of_trim_loop(base, &hole, false, tolerance)?, hole.shifted(-by)));
         }
     }
     Ok(kept)
 }
 
-/// A point of each stretch of some chains between cuts, given by number of the chain and fraction.
+/// A point of each part of some chains between cuts, given by number of the chain and fraction.
 fn middles(chains: &[Chain], cuts: Vec<(usize, f64)>) -> Vec<(&Chain, DVec3)> {
     let mut all = Vec::new();
     for (k, chain) in chains.iter().enumerate() {
@@ -229,5 +229,5 @@ fn middles(chains: &[Chain], cuts: Vec<(usize, f64)>) -> Vec<(&Chain, DVec3)> {
     all
 }
 
-/// Where between two cuts a stretch is looked at: no place that is special for anything.
+/// Where between two cuts a part is looked at: no place that is special for anything.
 const MIDDLE: f64 = 0.4873;

@@ -17,7 +17,7 @@ use crate::surface::rails::boundary;
 use crate::surface::rails::side::{Border, Side};
 use crate::surface::rails::trim_curve::{Pcurve, TrimCurve};
 
-/// A closed walk over a surface.
+/// A closed loop of borders on a surface.
 pub(crate) struct TrimLoop {
     pub borders: Vec<Border>,
     pub trim_curves: Vec<TrimCurve>,
@@ -66,18 +66,18 @@ fn area2(polygon: &[DVec2]) -> f64 {
 }
 
 /// A surface with these loops, the outer one first.
-pub(crate) fn assembled(base: &Surface, walks: Vec<TrimLoop>, origin: Origin) -> Result<Surface> {
+pub(crate) fn assembled(base: &Surface, trim_loops: Vec<TrimLoop>, origin: Origin) -> Result<Surface> {
     let mut parts = Parts { origin, kind: SurfaceKind::Trim, domain: Domain::Loop, ..base.parts().clone() };
     (parts.borders, parts.chains) = (Vec::new(), Vec::new());
     let mut trim = Trim { ground: base.ground(), loops: Vec::new(), trim_curves: Vec::new(), reach: (DVec2::ZERO, DVec2::ONE) };
-    for (k, walk) in walks.into_iter().enumerate() {
+    for (k, trim_loop) in trim_loops.into_iter().enumerate() {
         // Outer loops run counter-clockwise in (u, v), the others clockwise.
-        let ascending = area2(&walk.polygon()) > 0.0;
-        let walk = if ascending == (k == 0) { walk } else { walk.turned() };
-        trim.loops.push(walk.borders.len());
-        trim.trim_curves.extend(walk.trim_curves);
-        parts.borders.extend(walk.borders);
-        parts.chains.extend(walk.chains);
+        let ascending = area2(&trim_loop.polygon()) > 0.0;
+        let trim_loop = if ascending == (k == 0) { trim_loop } else { trim_loop.turned() };
+        trim.loops.push(trim_loop.borders.len());
+        trim.trim_curves.extend(trim_loop.trim_curves);
+        parts.borders.extend(trim_loop.borders);
+        parts.chains.extend(trim_loop.chains);
     }
     trim.reach = reach(&trim.trim_curves);
     parts.trim = Some(Arc::new(trim));
@@ -96,14 +96,14 @@ pub(crate) fn natural(base: &Surface, tolerance: &Tolerance) -> Result<Vec<TrimL
     let parts = base.parts();
     if let Some(trim) = &parts.trim {
         let mut first = 0;
-        let walk = |n: &usize| {
+        let trim_loop = |n: &usize| {
             let range = first..first + n;
             first += n;
             let borders = parts.borders[range.clone()].to_vec();
             let chains = borders.iter().filter_map(|b| if let Side::Chain { chain, .. } = &b.side { Some(chain.clone()) } else { None });
             TrimLoop { chains: chains.collect(), trim_curves: trim.trim_curves[range].to_vec(), borders }
         };
-        return Ok(trim.loops.iter().map(walk).collect());
+        return Ok(trim.loops.iter().map(trim_loop).collect());
     }
     if parts.domain == Domain::Loop {
         let steps: Vec<boundary::Step> = parts
@@ -136,7 +136,7 @@ pub(crate) fn around(base: &Surface, chains: &[Chain], role: LoopRole, tolerance
 fn followed(base: &Surface, steps: &[boundary::Step], tolerance: &Tolerance) -> Result<TrimLoop> {
     let first = closest(base, boundary::start(&steps[0]));
     let mut place = DVec2::new(first.uv.0, first.uv.1);
-    let mut walk = TrimLoop { borders: Vec::new(), trim_curves: Vec::new(), chains: Vec::new() };
+    let mut trim_loop = TrimLoop { borders: Vec::new(), trim_curves: Vec::new(), chains: Vec::new() };
     for (chain, against) in steps {
         let (from, to) = if *against { (1.0, 0.0) } else { (0.0, 1.0) };
         let pcurve = Pcurve::follow(base, chain, (from, to), place, tolerance.point).map_err(|off| {
@@ -144,9 +144,9 @@ fn followed(base: &Surface, steps: &[boundary::Step], tolerance: &Tolerance) -> 
             Fault::from(SurfaceFault::LoopOutsideSurface { of, surface: base.origin(), off: off.distance, at, tolerance: tolerance.point })
         })?;
         place = pcurve.ends().1;
-        walk.chains.push(chain.clone());
-        walk.trim_curves.push(TrimCurve::Pcurve(Arc::new(pcurve)));
-        walk.borders.push(Border::chain(chain.clone(), *against));
+        trim_loop.chains.push(chain.clone());
+        trim_loop.trim_curves.push(TrimCurve::Pcurve(Arc::new(pcurve)));
+        trim_loop.borders.push(Border::chain(chain.clone(), *against));
     }
-    Ok(walk)
+    Ok(trim_loop)
 }

@@ -1,5 +1,5 @@
 //! Curves that run along each other within the tolerance: overlaps, tangential contacts and pairs of crossings
-//! close together are told apart here.
+//! close together are separated here.
 
 use glam::DVec3;
 

@@ -37,7 +37,7 @@ pub(crate) fn hits(search: &Search, shared: &[Shared], tolerance: &Tolerance) ->
             let (va, vb) = (a.view(found.sections.0), b.view(found.sections.1));
             let ends = u8::from(va.at_end(found.near.ta)) + u8::from(vb.at_end(found.near.tb));
             let mut found = *found;
-            // An end neither crosses nor touches by itself: its direction tells.
+            // An end neither crosses nor touches by itself: its direction decides.
             if ends > 0 {
                 let (da, db) = (va.jet(found.near.ta).d1, vb.jet(found.near.tb).d1);
                 found.tangent = !tolerance.is_kink(da, db) || !tolerance.is_kink(da, -db);

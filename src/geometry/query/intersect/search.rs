@@ -212,7 +212,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Whether both parts are about equally long, so that one tells where on the other they run together.
+    /// Whether both parts are about equally long, so that one gives the place on the other where they run together.
     fn alike(&self, x: &Node, y: &Node) -> bool {
         let (p, q) = (x.p.0.distance_squared(x.p.1), y.p.0.distance_squared(y.p.1));
         let longer = p.max(q);

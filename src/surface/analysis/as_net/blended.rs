@@ -11,7 +11,7 @@ use glam::{DVec3, DVec4};
 
 use crate::base::tolerance::EPSILON;
 use crate::geometry::Jet;
-use crate::surface::analysis::as_net::family::{Course, Family, Fitted};
+use crate::surface::analysis::as_net::family::{Family, Fitted, Target};
 use crate::surface::analysis::as_net::splines::{Breaks, Hermite};
 use crate::surface::analysis::as_net::{DEGREES, NetForm, Off};
 use crate::surface::data::breaks::tidy;
@@ -25,7 +25,7 @@ use crate::surface::shapes::weights::{Axis, Rule};
 /// Parts of a cell over which blending functions are bounded.
 const PARTS: usize = 16;
 
-impl Course for &Rail {
+impl Target for &Rail {
     fn jet(&self, x: f64, side: OneSided) -> Jet {
         Rail::jet(self, x, side)
     }
@@ -63,8 +63,8 @@ fn made(blend: &Blend, within: f64) -> Result<NetForm, (f64, f64)> {
     let (across_u, across_v) = (if alone { 0.0 } else { reach(u) }, reach(v));
     let families = if alone { 1.0 } else { 2.0 };
     let one = |rails: &[Rail], fixed: [Breaks; 2], across: f64| {
-        let courses = rails.iter().map(|rail| Box::new(rail) as Box<dyn Course>).collect();
-        Family { courses, allowed: within / (families * across) }.fitted(fixed)
+        let targets = rails.iter().map(|rail| Box::new(rail) as Box<dyn Target>).collect();
+        Family { targets, allowed: within / (families * across) }.fitted(fixed)
     };
     let along_u =
         one(blend.along_u(), DEGREES.map(|p| if alone { Breaks::none(p) } else { lines(u, p) }), across_v).map_err(|x| (x, 0.0))?;

@@ -2,7 +2,7 @@
 //!
 //! Breaks go where the error is largest: each round gives a span as many parts as the root of its error over the allowed
 //! one says, of the order of the degree plus 1 [de Boor 1978, chapter XII]. What samples pass is then bounded: about the middle
-//! of a stretch of half width h the difference e is at most |e| + h |e′| there plus ½ h² times the range of e″.
+//! of an interval of half width h the difference e is at most |e| + h |e′| there plus ½ h² times the range of e″.
 
 use glam::DVec3;
 
@@ -30,15 +30,15 @@ const PARTS: f64 = 4.0;
 const ROOM: f64 = 0.01;
 /// Spans at most.
 const MOST_SPANS: usize = 1 << 12;
-/// Stretches of a span in which a spline is bounded, at most.
-const STRETCHES: usize = 1 << 11;
+/// Intervals of a span in which a spline is bounded, at most.
+const INTERVALS: usize = 1 << 11;
 /// Width of a span, as a share of the whole, at which one knot more at a jump begins to pay.
 const NARROW: f64 = 1.0 / 64.0;
 /// Times what is allowed: what a jump does over such a span where one knot more pays.
 const JUMP: f64 = 16.0;
 
 /// A curve under the surface's parameter.
-pub trait Course: Sync {
+pub trait Target: Sync {
     /// Point and derivatives, from the given side.
     fn jet(&self, x: f64, side: OneSided) -> Jet;
     /// Bounds between two parameters.
@@ -62,7 +62,7 @@ pub struct Fitted {
 /// Curves that get splines.
 pub struct Family<'a> {
     /// The curves.
-    pub courses: Vec<Box<dyn Course + 'a>>,
+    pub targets: Vec<Box<dyn Target + 'a>>,
     /// How far a spline may be from its curve, model units.
     pub allowed: f64,
 }
@@ -92,19 +92,19 @@ impl Family<'_> {
 
     /// Parameters at which derivatives jump by more than splines could follow, with how many go on.
     fn jumps(&self) -> Vec<(f64, usize)> {
-        let each = par::map(self.courses.len(), |c| {
-            let course = &self.courses[c];
-            let corners = course.corners().into_iter().map(|x| (x, 0));
-            let breaks = course.breaks();
+        let each = par::map(self.targets.len(), |c| {
+            let target = &self.targets[c];
+            let corners = target.corners().into_iter().map(|x| (x, 0));
+            let breaks = target.breaks();
             let wide = |k: usize| {
                 let (low, high) = (if k == 0 { 0.0 } else { breaks[k - 1] }, breaks.get(k + 1).copied().unwrap_or(1.0));
                 (0.25 * (breaks[k] - low).min(high - breaks[k])).clamp(NUDGE, NARROW * NARROW)
             };
             let jump = |k: usize| {
                 let x = breaks[k];
-                let (a, b, h) = (course.jet(x, OneSided::Before), course.jet(x, OneSided::After), wide(k));
-                let next = (b.d2 - course.jet((x + h).min(1.0), OneSided::Before).d2) * (-1.0 / h);
-                let last = (a.d2 - course.jet((x - h).max(0.0), OneSided::After).d2) * (1.0 / h);
+                let (a, b, h) = (target.jet(x, OneSided::Before), target.jet(x, OneSided::After), wide(k));
+                let next = (b.d2 - target.jet((x + h).min(1.0), OneSided::Before).d2) * (-1.0 / h);
+                let last = (a.d2 - target.jet((x - h).max(0.0), OneSided::After).d2) * (1.0 / h);
                 let limit = |order: i32| JUMP * self.allowed / math::powi(NARROW, order);
                 let over = [a.d1.distance(b.d1) > limit(1), a.d2.distance(b.d2) > limit(2), next.distance(last) > limit(3)];
                 over.iter().position(|over| *over).map(|order| (x, order))
@@ -207,12 +207,12 @@ impl Spreading<'_, '_> {
 
     /// The splines through the curves at the breaks.
     fn splines(&self, breaks: &Breaks) -> Vec<Hermite<DVec3>> {
-        par::map(self.family.courses.len(), |c| {
-            let course = &self.family.courses[c];
+        par::map(self.family.targets.len(), |c| {
+            let target = &self.family.targets[c];
             let mut spline = Hermite { value: Vec::new(), slope: Vec::new(), bend: Vec::new() };
             for (k, x) in breaks.at.iter().enumerate() {
-                let after = course.jet(*x, OneSided::After);
-                let before = if breaks.is_given(k) { course.jet(*x, OneSided::Before) } else { after };
+                let after = target.jet(*x, OneSided::After);
+                let before = if breaks.is_given(k) { target.jet(*x, OneSided::Before) } else { after };
                 spline.value.push(after.p);
                 // What goes on has one value.
                 let mean = |order: usize, a: DVec3, b: DVec3| if breaks.smooth[k] < order { [a, b] } else { [0.5 * (a + b); 2] };
@@ -229,7 +229,7 @@ impl Spreading<'_, '_> {
         let each = par::map(splines.len(), |c| {
             let at = |k: usize, share: f64| {
                 let x = breaks.at[k] + share * (breaks.at[k + 1] - breaks.at[k]);
-                breaks.jet(&splines[c], k, x)[0].distance(self.family.courses[c].jet(x, OneSided::After).p)
+                breaks.jet(&splines[c], k, x)[0].distance(self.family.targets[c].jet(x, OneSided::After).p)
             };
             (0..breaks.spans()).map(|k| PLACES.map(|share| at(k, share)).into_iter().fold(0.0, f64::max)).collect::<Vec<f64>>()
         });
@@ -243,7 +243,7 @@ impl Spreading<'_, '_> {
         while let Some((a, b)) = open.pop() {
             job::poll();
             let (middle, h) = (0.5 * (a + b), 0.5 * (b - a));
-            let line = self.family.courses[c].line(a, b);
+            let line = self.family.targets[c].line(a, b);
             let [p, slope, ..] = breaks.jet(spline, k, middle);
             let off = line.mid.p.distance(p);
             // A second derivative lies between those at the ends but for what it bends itself: linearly, of degree 5.
@@ -256,7 +256,7 @@ impl Spreading<'_, '_> {
                 continue;
             }
             seen += 1;
-            if off > self.family.allowed || seen + open.len() > STRETCHES {
+            if off > self.family.allowed || seen + open.len() > INTERVALS {
                 return f64::INFINITY;
             }
             open.push((middle, b));

@@ -147,18 +147,18 @@ pub fn surface(field: Field, runs: &[Vec<Side>], points: usize, origin: Origin, 
     if square {
         return Ok(base);
     }
-    let mut walk = TrimLoop { borders: Vec::new(), trim_curves: Vec::new(), chains: Vec::new() };
+    let mut trim_loop = TrimLoop { borders: Vec::new(), trim_curves: Vec::new(), chains: Vec::new() };
     for (curve, start) in curves.iter().zip(corners) {
         let chain = Chain::of_curve(curve);
         let pcurve = Pcurve::follow(&base, &chain, (0.0, 1.0), start, tolerance.point).map_err(|off| {
             let (off, at) = (off.distance, off.at);
             Fault::from(SurfaceFault::LoopOutsideSurface { of: origin, surface: origin, off, at, tolerance: tolerance.point })
         })?;
-        walk.borders.push(Border::chain(chain.clone(), false));
-        walk.trim_curves.push(TrimCurve::Pcurve(Arc::new(pcurve)));
-        walk.chains.push(chain);
+        trim_loop.borders.push(Border::chain(chain.clone(), false));
+        trim_loop.trim_curves.push(TrimCurve::Pcurve(Arc::new(pcurve)));
+        trim_loop.chains.push(chain);
     }
-    let made = assembled(&base, vec![walk], origin)?;
+    let made = assembled(&base, vec![trim_loop], origin)?;
     Ok(Surface::new(Parts { kind: SurfaceKind::Scatter, ..made.parts().clone() }))
 }
 
