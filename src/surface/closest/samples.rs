@@ -10,21 +10,34 @@ use crate::surface::data::breaks::{chain_breaks, tidy};
 use crate::surface::data::kind::Domain;
 use crate::surface::rails::side::Side;
 
-/// Samples along each side of a block.
-const BLOCK: usize = 8;
-/// A local minimum among the samples that is farther than the nearest sample by so many distances of neighbouring samples is
-/// not tried.
-const BEHIND: f64 = 2.0;
-/// Samples along one direction, at the least.
-const LEAST: usize = 24;
-/// Samples in a cell between breaks, at the least.
-const EACH: usize = 4;
-/// Samples of a surface between its breaks, at the most.
-const MOST: usize = 1 << 18;
-/// Even cells along each direction of a surface with three sides, at the most.
-const CELLS: f64 = 127.0;
-/// Points from whose samples a descent starts, at the most.
-const STARTS: usize = 64;
+/// How finely a surface is sampled, and from where descents start.
+struct Sampling {
+    /// Samples along each side of a block.
+    block_side: usize,
+    /// A local minimum among the samples that is farther than the nearest sample by so many distances of neighbouring samples is
+    /// not tried.
+    behind_spacings: f64,
+    /// Samples along one direction, at the least.
+    least_each_way: usize,
+    /// Samples in a cell between breaks, at the least.
+    least_in_cell: usize,
+    /// Samples of a surface between its breaks, at the most.
+    max_samples: usize,
+    /// Even cells along each direction of a surface with three sides, at the most.
+    max_even_cells: f64,
+    /// Points from whose samples a descent starts, at the most.
+    max_starts: usize,
+}
+
+const SAMPLING: Sampling = Sampling {
+    block_side: 8,
+    behind_spacings: 2.0,
+    least_each_way: 24,
+    least_in_cell: 4,
+    max_samples: 1 << 18,
+    max_even_cells: 127.0,
+    max_starts: 64,
+};
 
 /// Points of a surface at the crossings of columns and rows of its square.
 #[derive(Clone, Debug, Default)]
@@ -141,10 +154,10 @@ impl Samples {
         let (columns, rows) = (Line::new(xs, us, closed_u), Line::new(ys, vs, closed_v));
         let mut made = Self { columns, rows, points, blocks: Vec::new() };
         let (nx, ny) = made.size();
-        for j in (0..ny).step_by(BLOCK) {
-            for i in (0..nx).step_by(BLOCK) {
+        for j in (0..ny).step_by(SAMPLING.block_side) {
+            for i in (0..nx).step_by(SAMPLING.block_side) {
                 job::poll();
-                let (rows, columns) = ((j, (j + BLOCK).min(ny)), (i, (i + BLOCK).min(nx)));
+                let (rows, columns) = ((j, (j + SAMPLING.block_side).min(ny)), (i, (i + SAMPLING.block_side).min(nx)));
                 let mut block = Block { rows, columns, around: Box3::EMPTY, reach: 0.0 };
                 for k in block.samples(nx) {
                     block.around = block.around.with(made.points[k]);
@@ -192,10 +205,10 @@ impl Samples {
             if !again {
                 (points, last) = (points + 1, Some(self.points[k]));
             }
-            if points > STARTS {
+            if points > SAMPLING.max_starts {
                 break;
             }
-            let least = far(k).sqrt() - BEHIND * self.reach(k);
+            let least = far(k).sqrt() - SAMPLING.behind_spacings * self.reach(k);
             let mut add = |k: usize, (c, r): (usize, usize)| {
                 let place = (self.columns.at[k % nx], self.rows.at[k / nx]);
                 starts.push(Start { place, within: [self.columns.within(c), self.rows.within(r)], least });
@@ -237,10 +250,10 @@ impl Samples {
         };
         let mut minima = Vec::new();
         for (block, apart) in self.blocks.iter().zip(&apart) {
-            if apart.sqrt() > nearest + BEHIND * block.reach {
+            if apart.sqrt() > nearest + SAMPLING.behind_spacings * block.reach {
                 continue;
             }
-            for k in block.samples(nx).filter(|k| far(*k).sqrt() <= nearest + BEHIND * self.reach(*k)) {
+            for k in block.samples(nx).filter(|k| far(*k).sqrt() <= nearest + SAMPLING.behind_spacings * self.reach(*k)) {
                 minima.extend(self.rectangles(k).filter(|r| lowest(k, *r)).map(|r| (k, r)));
             }
         }
@@ -294,7 +307,7 @@ fn grid(surface: &Surface) -> (Vec<f64>, Vec<f64>) {
             _ => 1.0,
         };
         let narrowest = (0..surface.n_sides()).map(gaps).fold(1.0, f64::min);
-        let cells = (1.0 / narrowest).ceil().min(CELLS) as usize;
+        let cells = (1.0 / narrowest).ceil().min(SAMPLING.max_even_cells) as usize;
         xs = (1..cells).map(|k| k as f64 / cells as f64).collect();
         ys.clone_from(&xs);
     }
@@ -306,13 +319,13 @@ fn grid(surface: &Surface) -> (Vec<f64>, Vec<f64>) {
         ys.extend(kinks_v);
     }
     let (xs, ys) = (stations(&tidy(xs, EPSILON)), stations(&tidy(ys, EPSILON)));
-    if xs.len().saturating_mul(ys.len()) <= MOST { (xs, ys) } else { (stations(&us), stations(&vs)) }
+    if xs.len().saturating_mul(ys.len()) <= SAMPLING.max_samples { (xs, ys) } else { (stations(&us), stations(&vs)) }
 }
 
 /// Sample stations between given inner ends of cells.
 pub(crate) fn stations(inner: &[f64]) -> Vec<f64> {
     let stops = [&[0.0], inner, &[1.0]].concat();
-    let each = EACH.max(LEAST.div_ceil(stops.len() - 1));
+    let each = SAMPLING.least_in_cell.max(SAMPLING.least_each_way.div_ceil(stops.len() - 1));
     let mut all = Vec::with_capacity(each * stops.len());
     for w in stops.windows(2) {
         all.extend((0..each).map(|k| w[0] + (w[1] - w[0]) * k as f64 / each as f64));

@@ -14,14 +14,19 @@ use crate::surface::closest::foot::Footing;
 use crate::surface::intersect::curve_overlap::{Near, runs};
 use crate::surface::intersect::sheet::{Cell, Sheet, solved};
 
-/// Pairs looked at before giving up.
-const MOST_PAIRS: usize = 1_000_000;
-/// Share of the tolerance within which parts count as straight and cells as flat.
-const FINE: f64 = 0.25;
-/// A part that rises over the surface by no more than this many tolerances runs along it.
-const DIVERGENCE: f64 = 4.0;
-/// Parts that run along the surface, at most, before they say nothing more.
-const MOST_NEAR: usize = 1 << 14;
+/// What limits the search for meetings of a curve with a patch.
+struct CurveSearch {
+    /// Pairs looked at before giving up.
+    max_pairs: usize,
+    /// Share of the tolerance within which parts count as straight and cells as flat.
+    flat_share: f64,
+    /// A part that rises over the surface by no more than this many tolerances runs along it.
+    divergence_tolerances: f64,
+    /// Parts that run along the surface, at most, before they say nothing more.
+    max_near: usize,
+}
+
+const SEARCH: CurveSearch = CurveSearch { max_pairs: 1_000_000, flat_share: 0.25, divergence_tolerances: 4.0, max_near: 1 << 14 };
 
 /// A meeting with a patch.
 #[derive(Clone, Copy, Debug)]
@@ -105,12 +110,12 @@ impl Search<'_> {
         if self.exhausted.is_some() || self.sheet.is_outside(k) || apart(node, self.sheet.cell(k), self.point) {
             return;
         }
-        if self.looked_at > MOST_PAIRS || self.near.len() > MOST_NEAR {
+        if self.looked_at > SEARCH.max_pairs || self.near.len() > SEARCH.max_near {
             self.exhausted = Some(node.middle);
             return;
         }
         let cell = self.sheet.cell(k);
-        let fine = node.bulge <= FINE * self.point && cell.thick <= FINE * self.point;
+        let fine = node.bulge <= SEARCH.flat_share * self.point && cell.thick <= SEARCH.flat_share * self.point;
         let crossing = crosses(node, cell, self.point);
         if crossing {
             let (uv, t) = (cell.middle(), 0.5 * (node.t.0 + node.t.1));
@@ -277,7 +282,7 @@ fn crosses(node: &Node, cell: &Cell, point: f64) -> bool {
     // n·t ≥ cos φ · n·axis − sin φ · |n × axis| for tangents t within φ of the axis.
     let across = cell.normals.cross(&crate::base::range::Interval3::at(node.axis)).reach();
     // A part that hardly rises over its length runs along the surface.
-    let rises = node.p.0.distance(node.p.1) * least > DIVERGENCE * point * cell.normals.reach();
+    let rises = node.p.0.distance(node.p.1) * least > SEARCH.divergence_tolerances * point * cell.normals.reach();
     rises && least * cosine > across * sine
 }
 

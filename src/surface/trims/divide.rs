@@ -23,6 +23,31 @@ use crate::surface::trims::faces::{Edge, bridges, followers, is_plane, loops, wi
 use crate::surface::trims::pcurve::is_pole;
 use crate::surface::trims::trim_loop::{TrimLoop, assembled, natural};
 
+/// How vertices are found and the pieces that leave them are ordered.
+struct Vertices {
+    /// Ends of one piece farther from each other than so many tolerances are two vertices.
+    apart_tolerances: f64,
+    /// Share of the shortest piece at a vertex at which directions out of it are taken.
+    direction_share: f64,
+    /// Directions are taken so many tolerances away from a vertex, or at `clear_share` of the shortest piece where that is less.
+    clear_tolerances: f64,
+    /// Share of the shortest piece.
+    clear_share: f64,
+    /// Directions of pieces that are not apart there are taken no farther away than at this share of the shortest piece.
+    farthest_share: f64,
+    /// Places nearer in (u, v) than this may be one vertex: at a pole, elsewhere.
+    near_uv: (f64, f64),
+}
+
+const VERTICES: Vertices = Vertices {
+    apart_tolerances: 2.0,
+    direction_share: 0.01,
+    clear_tolerances: 8.0,
+    clear_share: 0.25,
+    farthest_share: 0.45,
+    near_uv: (NUDGE, 0.1),
+};
+
 /// Divides a surface by curves on it, together with its own border, and keeps the part with a point.
 ///
 /// Curves may run on beyond each other and beyond the border; what hangs loose cuts nothing. E613 when a curve is not on the
@@ -167,7 +192,7 @@ fn graph(base: &Surface, all: &[Piece], tolerance: &Tolerance) -> (Vec<Edge>, Pl
         let share = |vertex: usize| away[&vertex] / length(piece);
         let (first, last) = match length(piece).is_finite() {
             true => (share(ends.0), share(ends.1)),
-            false => (START, START),
+            false => (VERTICES.direction_share, VERTICES.direction_share),
         };
         // From the place of the vertex: where pieces leave a run that they share, only what they are off it separates them.
         (place(first) - places[ends.0].0, place(1.0 - last) - places[ends.1].0)
@@ -180,7 +205,8 @@ fn graph(base: &Surface, all: &[Piece], tolerance: &Tolerance) -> (Vec<Edge>, Pl
 /// cross flatly may run within the tolerance of each other for long.
 fn apart_at(all: &[Piece], fan: &[(usize, bool)], length: &impl Fn(&Piece) -> f64, tolerance: &Tolerance) -> f64 {
     let shortest = fan.iter().map(|(k, _)| length(&all[*k])).fold(f64::INFINITY, f64::min);
-    let first = (START * shortest).max((CLEAR * tolerance.point).min(CLEAR_SHARE * shortest));
+    let first =
+        (VERTICES.direction_share * shortest).max((VERTICES.clear_tolerances * tolerance.point).min(VERTICES.clear_share * shortest));
     let place = |(k, last): &(usize, bool), away: f64| {
         let (piece, share) = (&all[*k], away / length(&all[*k]));
         match (&piece.trim_curve, piece.own_chain()) {
@@ -190,12 +216,13 @@ fn apart_at(all: &[Piece], fan: &[(usize, bool)], length: &impl Fn(&Piece) -> f6
     };
     let apart = |away: f64| {
         let places: Vec<DVec3> = fan.iter().filter_map(|end| place(end, away)).collect();
-        (1..places.len()).all(|k| places[..k].iter().all(|p| p.distance(places[k]) > APART * tolerance.point))
+        (1..places.len()).all(|k| places[..k].iter().all(|p| p.distance(places[k]) > VERTICES.apart_tolerances * tolerance.point))
     };
     if !(first > 0.0 && first.is_finite()) {
         return first;
     }
-    let mut farther = std::iter::successors(Some(first), |away| Some(1.5 * away)).take_while(|away| *away <= FARTHEST * shortest);
+    let mut farther =
+        std::iter::successors(Some(first), |away| Some(1.5 * away)).take_while(|away| *away <= VERTICES.farthest_share * shortest);
     farther.find(|away| apart(*away)).unwrap_or(first)
 }
 
@@ -203,8 +230,8 @@ fn apart_at(all: &[Piece], fan: &[(usize, bool)], length: &impl Fn(&Piece) -> f6
 /// but never the two ends of a piece that are apart.
 fn vertices(base: &Surface, all: &[Piece], tolerance: &Tolerance) -> (Vec<(usize, usize)>, Places) {
     let ends: Places = all.iter().flat_map(|piece| [(piece.uv.0, piece.p.0), (piece.uv.1, piece.p.2)]).collect();
-    let apart: Vec<bool> = all.iter().map(|piece| piece.p.0.distance(piece.p.2) > APART * tolerance.point).collect();
-    let near: Vec<f64> = ends.iter().map(|(uv, _)| if is_pole(base, *uv) { NEAR.0 } else { NEAR.1 }).collect();
+    let apart: Vec<bool> = all.iter().map(|piece| piece.p.0.distance(piece.p.2) > VERTICES.apart_tolerances * tolerance.point).collect();
+    let near: Vec<f64> = ends.iter().map(|(uv, _)| if is_pole(base, *uv) { VERTICES.near_uv.0 } else { VERTICES.near_uv.1 }).collect();
     let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
     for (b, (uv, p)) in job::looking(ends.iter().enumerate()) {
         for (a, (st, q)) in ends[..b].iter().enumerate() {
@@ -233,9 +260,6 @@ fn vertices(base: &Surface, all: &[Piece], tolerance: &Tolerance) -> (Vec<(usize
     (of_pieces, firsts.iter().map(|k| ends[*k]).collect())
 }
 
-/// Ends of one piece farther from each other than so many tolerances are two vertices.
-const APART: f64 = 2.0;
-
 /// Which vertices are one point of the surface, across its seams and at its poles: the first of them for each.
 fn sites(base: &Surface, places: &Places, tolerance: &Tolerance) -> Vec<usize> {
     let (closed_u, closed_v) = base.closed();
@@ -243,21 +267,11 @@ fn sites(base: &Surface, places: &Places, tolerance: &Tolerance) -> Vec<usize> {
     let poles: Vec<bool> = places.iter().map(|(uv, _)| is_pole(base, *uv)).collect();
     let one = |a: usize, b: usize| {
         let ((uv, p), (st, q)) = (places[a], places[b]);
-        let turned = off(uv.x - st.x, closed_u).max(off(uv.y - st.y, closed_v)) <= NEAR.1;
+        let turned = off(uv.x - st.x, closed_u).max(off(uv.y - st.y, closed_v)) <= VERTICES.near_uv.1;
         p.distance(q) <= TOLD_APART * tolerance.point && (turned || poles[a] && poles[b])
     };
     (0..places.len()).map(|k| (0..k).find(|j| one(*j, k)).unwrap_or(k)).collect()
 }
-
-/// Share of the shortest piece at a vertex at which directions out of it are taken.
-const START: f64 = 0.01;
-/// Directions are taken so many tolerances away from a vertex, or at this share of the shortest piece where that is less.
-const CLEAR: f64 = 8.0;
-const CLEAR_SHARE: f64 = 0.25;
-/// Directions of pieces that are not apart there are taken no farther away than at this share of the shortest piece.
-const FARTHEST: f64 = 0.45;
-/// Places nearer in (u, v) than this may be one vertex: at a pole, elsewhere.
-const NEAR: (f64, f64) = (NUDGE, 0.1);
 
 /// The loops of a face, the outer one first.
 pub(crate) fn trim_loops(pieces: &[Piece], face: &Face) -> Vec<TrimLoop> {

@@ -14,14 +14,19 @@ use crate::surface::data::kind::Domain;
 use crate::surface::rails::side::Side;
 use crate::surface::rails::trim_curve::Pcurve;
 
-/// Steps between two breaks of a curve at the least.
-const LEAST: usize = 8;
-/// Largest share of a turn from one place to the next where a surface closes.
-const TURN: f64 = 0.2;
-/// Halvings of a step before it counts as a leap.
-const MAX_DEPTH: u32 = 12;
-/// How far a foot may be from where the last two places point, as a share of the step: a turn less than that is followed.
-const BEND: f64 = 0.25;
+/// What steers the steps in which a curve is followed in (u, v).
+struct Following {
+    /// Steps between two breaks of a curve at the least.
+    least_steps: usize,
+    /// Largest share of a turn from one place to the next where a surface closes.
+    largest_turn_share: f64,
+    /// Halvings of a step before it counts as a leap.
+    max_halvings: u32,
+    /// How far a foot may be from where the last two places point, as a share of the step: a turn less than that is followed.
+    largest_bend_share: f64,
+}
+
+const FOLLOW: Following = Following { least_steps: 8, largest_turn_share: 0.2, max_halvings: 12, largest_bend_share: 0.25 };
 
 /// Where a curve is too far from the surface.
 #[derive(Clone, Copy, Debug)]
@@ -68,9 +73,9 @@ impl Pcurve {
         };
         let mut at = vec![(from, land(from, start)?)];
         for w in cuts.windows(2) {
-            for k in 1..=LEAST {
-                let f = if k == LEAST { w[1] } else { w[0] + (w[1] - w[0]) * k as f64 / LEAST as f64 };
-                walk(surface, chain, &mut at, f, &land, MAX_DEPTH)?;
+            for k in 1..=FOLLOW.least_steps {
+                let f = if k == FOLLOW.least_steps { w[1] } else { w[0] + (w[1] - w[0]) * k as f64 / FOLLOW.least_steps as f64 };
+                walk(surface, chain, &mut at, f, &land, FOLLOW.max_halvings)?;
             }
         }
         Ok(Self::new(at, widest.get()))
@@ -144,8 +149,10 @@ fn walk(
             let moved = *uv - here;
             // Beside a pole the other way round leads to the same place.
             let (closed_u, closed_v) = surface.closed();
-            let sure = (!closed_u || moved.x.abs() <= TURN) && (!closed_v || moved.y.abs() <= TURN);
-            sure && (moved - ahead).length() <= BEND * moved.length().max(ahead.length()) || moved.length() <= EPSILON.sqrt()
+            let sure =
+                (!closed_u || moved.x.abs() <= FOLLOW.largest_turn_share) && (!closed_v || moved.y.abs() <= FOLLOW.largest_turn_share);
+            sure && (moved - ahead).length() <= FOLLOW.largest_bend_share * moved.length().max(ahead.length())
+                || moved.length() <= EPSILON.sqrt()
         }
         Err(_) => false,
     };
