@@ -28,7 +28,7 @@ pub fn offset(curve: &Curve, distance: f64, normal: DVec3, origin: Origin) -> Re
     finite(DVec3::splat(distance), "distance", origin)?;
     let normal = direction(normal, "normal", "with a length", origin)?;
     check_plane(curve, normal)?;
-    let plan = Plan { distance, normal, origin };
+    let plan = OffsetPlan { distance, normal, origin };
     let pieces = smooth_pieces(curve);
     let sides: Result<Vec<Curve>> = pieces.iter().map(|piece| plan.smooth(piece)).collect();
     let joined = plan.join(&pieces, sides?)?;
@@ -86,13 +86,13 @@ pub(crate) fn smooth_pieces(curve: &Curve) -> Vec<Curve> {
 }
 
 /// What all pieces share.
-struct Plan {
+struct OffsetPlan {
     distance: f64,
     normal: DVec3,
     origin: Origin,
 }
 
-impl Plan {
+impl OffsetPlan {
     fn too_far(&self, range: LengthRange) -> Fault {
         ValueFault::LengthOutside { argument: "distance", found: self.distance, range }.into()
     }
@@ -108,7 +108,7 @@ impl Plan {
             Shape::Offset(inner) => {
                 let turned = inner.normal.dot(self.normal).signum();
                 let distance = inner.distance + turned * self.distance;
-                return Plan { distance, normal: inner.normal, origin: self.origin }.smooth(&inner.base);
+                return OffsetPlan { distance, normal: inner.normal, origin: self.origin }.smooth(&inner.base);
             }
             _ => {
                 self.check_radius(piece)?;

@@ -27,7 +27,7 @@ const MOST_PIECES: usize = 1 << 14;
 const INTERVALS: usize = 64;
 
 /// A line with what it is fitted to.
-struct Fit<'a> {
+struct LineFit<'a> {
     surface: &'a Surface,
     line: IsoLine,
     allowed: f64,
@@ -37,7 +37,7 @@ struct Fit<'a> {
 ///
 /// Fails with E401 where the line is one point, E413 where nothing is known of its bend (a cusp below).
 pub(crate) fn fitted(surface: &Surface, line: IsoLine, origin: Origin, tolerance: &Tolerance) -> Result<Curve> {
-    let fit = Fit { surface, line, allowed: SHARE * tolerance.point };
+    let fit = LineFit { surface, line, allowed: SHARE * tolerance.point };
     let end = if surface.domain() == Domain::Triangle { 1.0 - line.value() } else { 1.0 };
     let (us, vs) = surface.breaks();
     let inner = if matches!(line, IsoLine::U(_)) { vs } else { us };
@@ -70,7 +70,7 @@ pub(crate) fn fitted(surface: &Surface, line: IsoLine, origin: Origin, tolerance
     if length <= tolerance.point { Err(zero(length).into()) } else { Ok(curve) }
 }
 
-impl Fit<'_> {
+impl LineFit<'_> {
     /// Point and derivatives of the line, from the given side.
     fn jet(&self, t: f64, side: OneSided) -> Jet {
         let (u, v) = self.line.at(t);

@@ -8,7 +8,7 @@ use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::network::flow::Member;
 use crate::network::{Chain, Flow, FlowKind};
-use crate::surface::blended::family::{Family, Prepared, averages, evenly, in_order, prepare};
+use crate::surface::blended::family::{GridFamily, Prepared, averages, evenly, in_order, prepare};
 use crate::surface::core::shape::Shape;
 use crate::surface::core::surface::{Parts, Surface};
 use crate::surface::data::breaks::merge_kinks;
@@ -19,7 +19,7 @@ use crate::surface::rails::reparam::{Map, Reparam};
 use crate::surface::rails::side::{Border, Side};
 use crate::surface::shapes::blend::Blend;
 use crate::surface::shapes::trilateral::Trilateral;
-use crate::surface::shapes::weights::{Axis, Rule};
+use crate::surface::shapes::weights::{BlendAxis, Rule};
 
 /// How curves are blended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,13 +95,13 @@ pub fn build(grid: &Grid, settings: &Settings, tolerance: &Tolerance) -> Result<
     let ends_v = (grid.poles.0.is_some(), grid.poles.1.is_some());
     let along_u = prepare(
         grid,
-        Family { members: &flow.along_u, across: &flow.along_v, closed: flow.closed_u, poles: (false, false), snap },
+        GridFamily { members: &flow.along_u, across: &flow.along_v, closed: flow.closed_u, poles: (false, false), snap },
         tolerance,
         &mut notes,
     )?;
     let along_v = prepare(
         grid,
-        Family { members: &flow.along_v, across: &flow.along_u, closed: flow.closed_v, poles: ends_v, snap },
+        GridFamily { members: &flow.along_v, across: &flow.along_u, closed: flow.closed_v, poles: ends_v, snap },
         tolerance,
         &mut notes,
     )?;
@@ -135,7 +135,7 @@ pub fn build(grid: &Grid, settings: &Settings, tolerance: &Tolerance) -> Result<
     if let Some(p) = grid.poles.1 {
         rails_u.push(Rail::Point(p));
     }
-    let blend = Blend::new(Axis::new(nodes_u, rules.0), Axis::new(nodes_v, rules.1), rails_v, rails_u);
+    let blend = Blend::new(BlendAxis::new(nodes_u, rules.0), BlendAxis::new(nodes_v, rules.1), rails_v, rails_u);
     if settings.method == Method::Lagrange {
         notes.extend(oscillation(&blend, settings.origin));
     }

@@ -10,7 +10,7 @@ use crate::surface::blended::coons::Grid;
 use crate::surface::faults::SurfaceFault;
 
 /// The curves of one direction, with what they are cut by.
-pub(super) struct Family<'a> {
+pub(super) struct GridFamily<'a> {
     pub members: &'a [Member],
     pub across: &'a [Member],
     pub closed: bool,
@@ -28,7 +28,7 @@ pub(super) struct Prepared {
 }
 
 /// The curves of a family, each cut to the borders.
-pub(super) fn prepare(grid: &Grid, family: Family, tolerance: &Tolerance, notes: &mut Vec<Fault>) -> Result<Vec<Prepared>> {
+pub(super) fn prepare(grid: &Grid, family: GridFamily, tolerance: &Tolerance, notes: &mut Vec<Fault>) -> Result<Vec<Prepared>> {
     let one = |member: &Member| -> Result<Prepared> {
         let chain = grid.chains[member.curve].clone();
         let (first, last) = if member.reversed { (1.0, 0.0) } else { (0.0, 1.0) };
@@ -75,7 +75,7 @@ fn shifted(chain: Chain, member: &Member, snap: f64, tolerance: &Tolerance) -> R
 /// The part of a curve between the borders; what stands out is left out with a note.
 fn trimmed(
     grid: &Grid,
-    family: &Family,
+    family: &GridFamily,
     member: &Member,
     chain: Chain,
     raw: Vec<f64>,

@@ -25,7 +25,7 @@ use crate::surface::data::kind::SurfaceKind;
 use crate::surface::data::one_sided::OneSided;
 use crate::surface::rails::rail::Rail;
 use crate::surface::shapes::blend::Blend;
-use crate::surface::shapes::weights::{Axis, Rule};
+use crate::surface::shapes::weights::{BlendAxis, Rule};
 
 /// A complete net of curves in common parameters.
 #[derive(Clone, Debug)]
@@ -74,8 +74,8 @@ pub(crate) fn blended(net: CurveNet, named: Named, straight: bool, tolerance: &T
         (_, true) => Rule::Periodic,
         _ => Rule::Spline,
     };
-    let u = Axis::new(nodes.0, if along_v.is_empty() { Rule::Lagrange } else { rule(closed.0) });
-    let blend = Blend::new(u, Axis::new(nodes.1, rule(closed.1)), along_v, along_u);
+    let u = BlendAxis::new(nodes.0, if along_v.is_empty() { Rule::Lagrange } else { rule(closed.0) });
+    let blend = Blend::new(u, BlendAxis::new(nodes.1, rule(closed.1)), along_v, along_u);
     let mut notes = Vec::new();
     let made = Made { origin: named.origin, kind: named.kind, flow: named.flow, closed, chains: named.chains };
     (finish(blend, made, tolerance, &mut notes), notes)

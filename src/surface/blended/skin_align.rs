@@ -103,7 +103,7 @@ fn nearer_backwards(before: &Chain, back: bool, chain: &Chain) -> bool {
 }
 
 /// A closed section and the one that is to follow it.
-struct Pair<'a> {
+struct SectionPair<'a> {
     before: (&'a Chain, bool),
     section: &'a Chain,
     /// Whether the second is read backwards.
@@ -113,7 +113,7 @@ struct Pair<'a> {
     centers: (DVec3, DVec3),
 }
 
-impl<'a> Pair<'a> {
+impl<'a> SectionPair<'a> {
     /// `a` and `b` are the rings of both, the second one as it is drawn.
     fn new(before: (&'a Chain, bool), section: &'a Chain, turned: bool, a: Ring, b: Ring) -> Self {
         let b = if turned { b.turned() } else { b };
@@ -165,9 +165,9 @@ fn nearest_start(before: (&Chain, bool), section: &Chain, tolerance: &Tolerance)
     let (ring, own) = (Ring::of(before.0), Ring::of(section));
     let ring = if before.1 { ring.turned() } else { ring };
     let against = ring.runs_against(&own);
-    let mut best: Option<(f64, f64, Pair)> = None;
+    let mut best: Option<(f64, f64, SectionPair)> = None;
     for turned in against.map_or(vec![false, true], |turned| vec![turned]) {
-        let pair = Pair::new(before, section, turned, ring, own);
+        let pair = SectionPair::new(before, section, turned, ring, own);
         let wanted: Vec<DVec3> = (0..PLACES).map(|k| pair.wanted(k as f64 / PLACES as f64)).collect();
         let off = starts.iter().map(|start| (pair.apart(&wanted, *start), *start));
         let nearer = |a: (f64, f64), b: (f64, f64)| if b.0 < a.0 * (1.0 - tolerance.parameter) { b } else { a };

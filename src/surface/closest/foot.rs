@@ -135,9 +135,9 @@ pub fn foot_within(evaluator: Evaluator, p: DVec3, guess: (f64, f64), u: (f64, f
 }
 
 /// Feet on a surface, held in the parts of (u, v) where it is.
-struct Whole<'a>(Evaluator<'a>);
+struct WholeSurface<'a>(Evaluator<'a>);
 
-impl Footing for Whole<'_> {
+impl Footing for WholeSurface<'_> {
     fn jet(&self, uv: DVec2) -> Jet2 {
         self.0.jet(uv.x, uv.y)
     }
@@ -149,7 +149,7 @@ impl Footing for Whole<'_> {
 
 /// The foot of a point near a guess, with its distance.
 pub(crate) fn foot(evaluator: Evaluator, p: DVec3, guess: DVec2) -> (DVec2, f64) {
-    Whole(evaluator).foot(p, guess)
+    WholeSurface(evaluator).foot(p, guess)
 }
 
 impl Surface {

@@ -24,7 +24,7 @@ const MAX_DEPTH: u32 = 40;
 const MOST: u32 = 16 * MAX_DEPTH;
 
 /// A fraction of a chain and its place.
-type Foot = (f64, DVec2);
+type ChainFoot = (f64, DVec2);
 
 impl Surface {
     /// A place and the same place whole turns away, round a surface that closes: of a trimmed surface all that its loops may hold.
@@ -89,7 +89,7 @@ impl Surface {
     }
 
     /// The same for a piece of a chain between two of its feet, halved while the place may lie between it and its chord.
-    fn turn_of(&self, chain: &Chain, ((fa, a), (fb, b)): (Foot, Foot), p: DVec2, deep: u32, left: &mut u32) -> f64 {
+    fn turn_of(&self, chain: &Chain, ((fa, a), (fb, b)): (ChainFoot, ChainFoot), p: DVec2, deep: u32, left: &mut u32) -> f64 {
         let length = a.distance(b);
         let nearest = {
             let share = ((p - a).dot(b - a) / (length * length)).clamp(0.0, 1.0);

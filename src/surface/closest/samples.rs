@@ -42,15 +42,15 @@ const SAMPLING: Sampling = Sampling {
 /// Points of a surface at the crossings of columns and rows of its square.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Samples {
-    columns: Line,
-    rows: Line,
+    columns: SampleLine,
+    rows: SampleLine,
     points: Vec<DVec3>,
     blocks: Vec<Block>,
 }
 
 /// Where the square is sampled along one direction.
 #[derive(Clone, Debug, Default)]
-struct Line {
+struct SampleLine {
     at: Vec<f64>,
     /// Between which creases each of them lies, as places among `stops`: of the interval before and of the one after, which differ on a
     /// crease only.
@@ -84,7 +84,7 @@ pub(crate) struct Start {
     pub least: f64,
 }
 
-impl Line {
+impl SampleLine {
     fn new(at: Vec<f64>, creases: &[f64], closed: bool) -> Self {
         let (mut stops, mut ends) = (vec![0.0], vec![0]);
         for crease in creases {
@@ -151,7 +151,7 @@ impl Samples {
         let square = surface.domain() == Domain::Square;
         let (us, vs) = if square { surface.kinks() } else { (&[][..], &[][..]) };
         let (closed_u, closed_v) = if square { surface.closed() } else { (false, false) };
-        let (columns, rows) = (Line::new(xs, us, closed_u), Line::new(ys, vs, closed_v));
+        let (columns, rows) = (SampleLine::new(xs, us, closed_u), SampleLine::new(ys, vs, closed_v));
         let mut made = Self { columns, rows, points, blocks: Vec::new() };
         let (nx, ny) = made.size();
         for j in (0..ny).step_by(SAMPLING.block_side) {

@@ -20,13 +20,13 @@ use crate::surface::shapes::sweep::Path;
 #[derive(Clone, Debug)]
 pub(crate) struct SweptProfile {
     chain: Chain,
-    way: Way,
+    way: SweptWay,
     /// v runs against the profile.
     is_flipped: bool,
 }
 
 #[derive(Clone, Debug)]
-enum Way {
+enum SweptWay {
     /// Along a vector: each run's curve as it is seen along it, all in the plane through the origin.
     Straight { by: DVec3, direction: DVec3, seen: Vec<Curve>, is_across: bool },
     /// About an axis: the profile lies in the half plane from the axis along the unit vector `out`.
@@ -48,9 +48,9 @@ impl SweptProfile {
                 let seen = chain.runs().iter().map(|run| projected_along(&run.curve, direction)).collect::<Option<Vec<Curve>>>()?;
                 let heights = || framing(&chain).into_iter().flatten().map(|p| (p - chain.start()).dot(direction).abs());
                 let is_across = heights().fold(0.0, f64::max) <= ROUNDING_SHARE * chain.bbox().diagonal();
-                Way::Straight { by, direction, seen, is_across }
+                SweptWay::Straight { by, direction, seen, is_across }
             }
-            Path::Turn { about, axis, angle } => Way::Turn { about, axis, out: half_plane(&chain, about, axis)?, angle },
+            Path::Turn { about, axis, angle } => SweptWay::Turn { about, axis, out: half_plane(&chain, about, axis)?, angle },
         };
         Some(Self { chain, way, is_flipped: whole.parts().flipped })
     }
@@ -64,12 +64,12 @@ impl SweptProfile {
     /// The same with v as the profile's fraction.
     fn along_profile(&self, p: DVec3) -> Option<(f64, f64)> {
         match &self.way {
-            Way::Straight { by, direction, seen, is_across } => {
+            SweptWay::Straight { by, direction, seen, is_across } => {
                 let (v, foot) = self.nearest_seen(seen, p - *direction * direction.dot(p));
                 let u = (p - foot).dot(*by) / by.length_squared();
                 (*is_across || (0.0..=1.0).contains(&u)).then(|| (u.clamp(0.0, 1.0), v))
             }
-            Way::Turn { about, axis, out, angle } => {
+            SweptWay::Turn { about, axis, out, angle } => {
                 let arm = p - *about;
                 let along = *axis * axis.dot(arm);
                 let (x, y) = (arm.dot(*out), arm.dot(axis.cross(*out)));

@@ -10,7 +10,7 @@ use crate::base::math;
 use crate::base::range::Interval;
 use crate::base::tolerance::EPSILON;
 use crate::geometry::Motion;
-use crate::surface::core::joined_piece::{Piece, Sides, foot};
+use crate::surface::core::joined_piece::{JoinedPiece, SidePair, foot};
 use crate::surface::core::surface::Surface;
 use crate::surface::data::breaks::tidy;
 use crate::surface::data::enclosure::Enclosure;
@@ -22,7 +22,7 @@ pub(super) const PLACES: usize = 64;
 /// Surfaces as one.
 #[derive(Clone, Debug)]
 pub struct Joined {
-    pieces: Vec<Piece>,
+    pieces: Vec<JoinedPiece>,
     /// Where each begins in x, and 1.
     stops: Vec<f64>,
     /// x is v.
@@ -37,7 +37,7 @@ crate::content!(Joined { pieces, stops, across_v } but { rough, bent });
 
 impl Joined {
     /// Pieces in order, each with its mean length along x; the borders between them are found to be common.
-    pub fn new(pieces: Vec<Piece>, lengths: &[f64], across_v: bool) -> Self {
+    pub fn new(pieces: Vec<JoinedPiece>, lengths: &[f64], across_v: bool) -> Self {
         let total: f64 = lengths.iter().sum();
         let mut stops = vec![0.0];
         stops.extend(lengths[..lengths.len() - 1].iter().scan(0.0, |sum, l| {
@@ -56,13 +56,13 @@ impl Joined {
 
     /// The surfaces in the order in which they were given.
     pub fn given(&self) -> Vec<Surface> {
-        let mut order: Vec<&Piece> = self.pieces.iter().collect();
+        let mut order: Vec<&JoinedPiece> = self.pieces.iter().collect();
         order.sort_by_key(|p| p.given);
         order.into_iter().map(|p| p.surface.clone()).collect()
     }
 
     /// The pieces.
-    pub fn pieces(&self) -> &[Piece] {
+    pub fn pieces(&self) -> &[JoinedPiece] {
         &self.pieces
     }
 
@@ -99,7 +99,7 @@ impl Joined {
     fn table(&self, k: usize) -> Vec<f64> {
         let (a, b) = (&self.pieces[k - 1], &self.pieces[k]);
         let sides = (OneSided::After, OneSided::After);
-        let point = |piece: &Piece, x: f64, y: f64| piece.jet(x, y, sides).p;
+        let point = |piece: &JoinedPiece, x: f64, y: f64| piece.jet(x, y, sides).p;
         let grid: Vec<DVec3> = (0..=4 * PLACES).map(|n| point(b, 0.0, n as f64 / (4 * PLACES) as f64)).collect();
         let mut from = 0;
         let mut table = Vec::with_capacity(PLACES + 1);
@@ -142,7 +142,7 @@ impl Joined {
     }
 
     /// The y of `b` where its first border has the point that the last border of `a` has at a y of its own.
-    fn next(a: &Piece, b: &Piece, y: f64) -> f64 {
+    fn next(a: &JoinedPiece, b: &JoinedPiece, y: f64) -> f64 {
         if y <= 0.0 || y >= 1.0 {
             return y.clamp(0.0, 1.0);
         }
@@ -175,7 +175,7 @@ impl Joined {
         (k, if share.abs() <= EPSILON { 0.0 } else { share })
     }
 
-    fn xy_jet(&self, x: f64, y: f64, sides: Sides) -> Jet2 {
+    fn xy_jet(&self, x: f64, y: f64, sides: SidePair) -> Jet2 {
         let (k, x) = self.at(x, sides.0);
         let [w, slope, bend] = self.own(k, y, sides.1);
         let jet = self.pieces[k].jet(x, w, sides);
@@ -195,7 +195,7 @@ impl Joined {
     }
 
     /// Point and derivatives.
-    pub fn jet(&self, u: f64, v: f64, sides: Sides) -> Jet2 {
+    pub fn jet(&self, u: f64, v: f64, sides: SidePair) -> Jet2 {
         if self.across_v { Self::swapped(self.xy_jet(v, u, (sides.1, sides.0))) } else { self.xy_jet(u, v, sides) }
     }
 
@@ -206,7 +206,7 @@ impl Joined {
 
     /// The y at which pieces have a seam inside.
     pub fn turned_seams(&self) -> Vec<f64> {
-        let one = |(k, piece): (usize, &Piece)| piece.seam().map(|seam| self.common(k, seam));
+        let one = |(k, piece): (usize, &JoinedPiece)| piece.seam().map(|seam| self.common(k, seam));
         tidy(self.pieces.iter().enumerate().filter_map(one).collect(), EPSILON * PLACES as f64)
     }
 
@@ -285,7 +285,7 @@ impl Joined {
 
     /// Carried by a motion.
     pub fn moved(&self, motion: &Motion) -> Self {
-        let piece = |p: &Piece| Piece { surface: p.surface.moved(motion), ..p.clone() };
+        let piece = |p: &JoinedPiece| JoinedPiece { surface: p.surface.moved(motion), ..p.clone() };
         Self { pieces: self.pieces.iter().map(piece).collect(), ..self.clone() }
     }
 }

@@ -14,7 +14,7 @@ use crate::surface::data::one_sided::OneSided;
 /// Newton steps.
 const STEPS: usize = 16;
 
-pub(super) type Sides = (OneSided, OneSided);
+pub(super) type SidePair = (OneSided, OneSided);
 
 /// How the unit square of a surface lies in that of x and y.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -44,7 +44,7 @@ impl Turn {
         if self.swap { (y, x) } else { (x, y) }
     }
 
-    fn sides(self, (x, y): Sides) -> Sides {
+    fn sides(self, (x, y): SidePair) -> SidePair {
         let turned = |side: OneSided, back: bool| if back { side.turned() } else { side };
         let (x, y) = (turned(x, self.back_x), turned(y, self.back_y));
         if self.swap { (y, x) } else { (x, y) }
@@ -74,7 +74,7 @@ impl Turn {
 
 /// One of several surfaces that follow one another.
 #[derive(Clone, Debug)]
-pub struct Piece {
+pub struct JoinedPiece {
     /// The surface, of a square.
     pub surface: Surface,
     /// How it lies.
@@ -87,9 +87,9 @@ pub struct Piece {
     pub(super) follow: Vec<f64>,
 }
 
-crate::content!(Piece { surface, turn, given, shift, follow });
+crate::content!(JoinedPiece { surface, turn, given, shift, follow });
 
-impl Piece {
+impl JoinedPiece {
     /// A surface that lies so, its own y not yet found.
     pub fn new(surface: Surface, turn: Turn, given: usize) -> Self {
         Self { surface, turn, given, shift: 0.0, follow: Vec::new() }
@@ -116,7 +116,7 @@ impl Piece {
     }
 
     /// Point and derivatives with respect to its own x and y.
-    pub fn jet(&self, x: f64, y: f64, sides: Sides) -> Jet2 {
+    pub fn jet(&self, x: f64, y: f64, sides: SidePair) -> Jet2 {
         // At its ends, which may be inside the surface, it is known from inside.
         let side = if y >= 1.0 {
             OneSided::Before
@@ -155,12 +155,12 @@ impl Piece {
 }
 
 /// The y near a guess where the first border of a piece is nearest to a point.
-pub fn foot(piece: &Piece, guess: f64, p: DVec3) -> f64 {
+pub fn foot(piece: &JoinedPiece, guess: f64, p: DVec3) -> f64 {
     foot_on(piece, 0.0, guess, p)
 }
 
 /// The same of the line of constant x of a piece that closes in y: beside its seam the foot may be on either side of it.
-pub fn foot_round(piece: &Piece, x: f64, guess: f64, p: DVec3) -> f64 {
+pub fn foot_round(piece: &JoinedPiece, x: f64, guess: f64, p: DVec3) -> f64 {
     let starts = if guess <= 0.0 || guess >= 1.0 { vec![0.0, 1.0] } else { vec![guess] };
     let far = |w: &f64| piece.jet(x, *w, (OneSided::After, OneSided::After)).p.distance_squared(p);
     let feet = starts.into_iter().map(|start| foot_on(piece, x, start, p));
@@ -168,7 +168,7 @@ pub fn foot_round(piece: &Piece, x: f64, guess: f64, p: DVec3) -> f64 {
 }
 
 /// The y near a guess where the line of constant x is nearest to a point.
-fn foot_on(piece: &Piece, x: f64, guess: f64, p: DVec3) -> f64 {
+fn foot_on(piece: &JoinedPiece, x: f64, guess: f64, p: DVec3) -> f64 {
     let mut w = guess;
     for _ in 0..STEPS {
         let jet = piece.jet(x, w, (OneSided::After, OneSided::After));

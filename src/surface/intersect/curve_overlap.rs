@@ -6,7 +6,7 @@ use crate::base::solve;
 use crate::base::tolerance::{EPSILON, NEWTON_STEP};
 use crate::geometry::curves::pieces::View;
 use crate::surface::closest::foot::Footing;
-use crate::surface::intersect::curve_patch::{Contact, Search, Touch};
+use crate::surface::intersect::curve_patch::{Contact, CurveSearch, CurveTouch};
 
 /// The parts of a section that run along a cell.
 #[derive(Clone, Copy, Debug)]
@@ -33,7 +33,7 @@ impl Run {
     }
 }
 
-impl Search<'_> {
+impl CurveSearch<'_> {
     /// The overlap of a run, else its touches and crossings.
     pub(super) fn resolve(&mut self, run: &Run, out: &mut Vec<Contact>) {
         const SAMPLES: usize = 65;
@@ -43,7 +43,7 @@ impl Search<'_> {
         let at = |k: usize| if k + 1 == SAMPLES { t1 } else { t0 + (t1 - t0) * k as f64 / (SAMPLES - 1) as f64 };
         // From the place before, or, where that leads off (past a pole, over a fold), from that of the part.
         let mut uv = run.places[0].1;
-        let mut samples: Vec<Sample> = Vec::with_capacity(SAMPLES);
+        let mut samples: Vec<OverlapSample> = Vec::with_capacity(SAMPLES);
         for k in 0..SAMPLES {
             let mut best = self.sample(&view, at(k), uv);
             for (_, place) in run.near(at(k)) {
@@ -59,7 +59,7 @@ impl Search<'_> {
         let common = |t: f64| section.to_common(t);
         let overlap = longest(&samples, |s| s.gap <= self.point);
         if let Some((i, j)) = overlap {
-            let ended = |s: &Sample| view.at_end(s.t) || self.at_border(s.uv);
+            let ended = |s: &OverlapSample| view.at_end(s.t) || self.at_border(s.uv);
             let length = (i..j).map(|k| samples[k].p.distance(samples[k + 1].p)).sum::<f64>();
             let close = longest(&samples, |s| s.gap <= 0.5 * self.point);
             let lies = close.is_some_and(|(i, j)| (i..j).map(|k| samples[k].p.distance(samples[k + 1].p)).sum::<f64>() > self.long);
@@ -75,7 +75,7 @@ impl Search<'_> {
     }
 
     /// Where an overlap that lies on the surface ends beyond its last sample: there the gap begins to grow.
-    fn overlap_end(&self, view: &View, samples: &[Sample], k: usize, first: bool) -> f64 {
+    fn overlap_end(&self, view: &View, samples: &[OverlapSample], k: usize, first: bool) -> f64 {
         const ROUNDS: usize = 60;
         const EXACT: f64 = 64.0;
         let beyond = if first { k.checked_sub(1) } else { Some(k + 1).filter(|k| *k < samples.len()) };
@@ -91,12 +91,12 @@ impl Search<'_> {
     }
 
     /// Whether the heights over a run have no crossing in them that stands out: it lies on the surface from end to end.
-    fn is_flat_run(&self, samples: &[Sample]) -> bool {
+    fn is_flat_run(&self, samples: &[OverlapSample]) -> bool {
         samples.iter().all(|s| s.height.abs() <= 0.5 * self.point)
     }
 
     /// Crossings and touches among samples.
-    fn points(&mut self, view: &View, run: &Run, samples: &[Sample]) {
+    fn points(&mut self, view: &View, run: &Run, samples: &[OverlapSample]) {
         let section = run.section;
         let before = self.found.len();
         for w in samples.windows(2) {
@@ -119,7 +119,8 @@ impl Search<'_> {
         // Several touches without a rise between them are one.
         let mut fresh = self.found.split_off(before);
         fresh.sort_by(|a, b| a.1.gap.total_cmp(&b.1.gap).then(a.1.t.total_cmp(&b.1.t)));
-        let alone = |kept: &[(usize, Touch)], touch: &Touch| kept.iter().all(|(s, k)| *s != section || k.p.distance(touch.p) > self.long);
+        let alone =
+            |kept: &[(usize, CurveTouch)], touch: &CurveTouch| kept.iter().all(|(s, k)| *s != section || k.p.distance(touch.p) > self.long);
         for one in fresh {
             if alone(&self.found, &one.1) {
                 self.found.push(one);
@@ -127,14 +128,14 @@ impl Search<'_> {
         }
     }
 
-    fn take(&mut self, view: &View, section: usize, s: Sample) {
+    fn take(&mut self, view: &View, section: usize, s: OverlapSample) {
         if s.gap <= self.point {
             let touch = self.touch(view, s.t, s.uv);
             self.found.push((section, touch));
         }
     }
 
-    fn root(&self, view: &View, x: &Sample, y: &Sample) -> Sample {
+    fn root(&self, view: &View, x: &OverlapSample, y: &OverlapSample) -> OverlapSample {
         let (mut low, mut high) = (*x, *y);
         const ROUNDS: usize = 80;
         for _ in 0..ROUNDS {
@@ -147,12 +148,12 @@ impl Search<'_> {
         if low.gap <= high.gap { low } else { high }
     }
 
-    fn sample(&self, view: &View, t: f64, near: DVec2) -> Sample {
+    fn sample(&self, view: &View, t: f64, near: DVec2) -> OverlapSample {
         let p = view.point(t);
         let (uv, gap) = self.sheet.patch.foot(p, near);
         let jet = self.sheet.patch.jet(uv);
         let height = (p - jet.p).dot(jet.du.cross(jet.dv).normalize_or_zero());
-        Sample { t, uv, p, gap, height }
+        OverlapSample { t, uv, p, gap, height }
     }
 
     fn at_border(&self, uv: DVec2) -> bool {
@@ -162,7 +163,7 @@ impl Search<'_> {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Sample {
+struct OverlapSample {
     t: f64,
     uv: DVec2,
     p: DVec3,
@@ -172,7 +173,7 @@ struct Sample {
 }
 
 /// The longest row of samples that all fulfil something: its first and last.
-fn longest(samples: &[Sample], holds: impl Fn(&Sample) -> bool) -> Option<(usize, usize)> {
+fn longest(samples: &[OverlapSample], holds: impl Fn(&OverlapSample) -> bool) -> Option<(usize, usize)> {
     let mut best: Option<(usize, usize)> = None;
     let mut start = None;
     for k in 0..=samples.len() {

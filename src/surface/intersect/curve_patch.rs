@@ -15,7 +15,7 @@ use crate::surface::intersect::curve_overlap::{Near, runs};
 use crate::surface::intersect::sheet::{Cell, Sheet, solved};
 
 /// What limits the search for meetings of a curve with a patch.
-struct CurveSearch {
+struct CurveLimits {
     /// Pairs looked at before giving up.
     max_pairs: usize,
     /// Share of the tolerance within which parts count as straight and cells as flat.
@@ -26,12 +26,12 @@ struct CurveSearch {
     max_near: usize,
 }
 
-const SEARCH: CurveSearch = CurveSearch { max_pairs: 1_000_000, flat_share: 0.25, divergence_tolerances: 4.0, max_near: 1 << 14 };
+const SEARCH: CurveLimits = CurveLimits { max_pairs: 1_000_000, flat_share: 0.25, divergence_tolerances: 4.0, max_near: 1 << 14 };
 
 /// A meeting with a patch.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Contact {
-    Point(Touch),
+    Point(CurveTouch),
     /// The curve runs within the tolerance of the surface between two parameters.
     Overlap {
         t: (f64, f64),
@@ -40,7 +40,7 @@ pub(crate) enum Contact {
 
 /// A single place where they meet, or the curve touches.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Touch {
+pub(crate) struct CurveTouch {
     /// Parameter of the curve.
     pub t: f64,
     /// Place on the patch.
@@ -53,19 +53,19 @@ pub(crate) struct Touch {
     pub sine: f64,
 }
 
-struct Part<'a> {
+struct CurvePart<'a> {
     view: View<'a>,
     rates: Rates,
     section: usize,
 }
 
-pub(super) struct Search<'a> {
+pub(super) struct CurveSearch<'a> {
     pub curve: &'a Curve,
     pub sheet: &'a mut Sheet,
     pub point: f64,
     /// Longer ones that stay within the tolerance lie on the surface.
     pub long: f64,
-    pub found: Vec<(usize, Touch)>,
+    pub found: Vec<(usize, CurveTouch)>,
     near: Vec<Near>,
     looked_at: usize,
     exhausted: Option<DVec3>,
@@ -76,7 +76,7 @@ pub(super) struct Search<'a> {
 /// `long`: what stays within the distance for less is a touch.
 pub(crate) fn contacts(curve: &Curve, sheet: &mut Sheet, point: f64, long: f64) -> Result<Vec<Contact>, DVec3> {
     let (found, near) = (Vec::new(), Vec::new());
-    let mut search = Search { curve, sheet, point, long, found, near, looked_at: 0, exhausted: None };
+    let mut search = CurveSearch { curve, sheet, point, long, found, near, looked_at: 0, exhausted: None };
     let count = curve.pieces().pieces.len();
     for root in search.sheet.roots.clone() {
         search.walk((0, 0, count), root);
@@ -87,7 +87,7 @@ pub(crate) fn contacts(curve: &Curve, sheet: &mut Sheet, point: f64, long: f64) 
     Ok(search.settled())
 }
 
-impl Search<'_> {
+impl CurveSearch<'_> {
     /// Pieces of the curve below a node of its tree against a cell.
     fn walk(&mut self, x: (usize, usize, usize), cell: usize) {
         let pieces = self.curve.pieces();
@@ -96,7 +96,7 @@ impl Search<'_> {
         }
         if x.2 - x.1 == 1 {
             let piece = &pieces.pieces[x.1];
-            let part = Part { view: pieces.view_of(self.curve, piece.section), rates: piece.rates, section: piece.section };
+            let part = CurvePart { view: pieces.view_of(self.curve, piece.section), rates: piece.rates, section: piece.section };
             self.pair(&part, &piece.node, cell);
             return;
         }
@@ -105,7 +105,7 @@ impl Search<'_> {
         self.walk((right, middle, x.2), cell);
     }
 
-    fn pair(&mut self, part: &Part, node: &Node, k: usize) {
+    fn pair(&mut self, part: &CurvePart, node: &Node, k: usize) {
         self.looked_at += 1;
         if self.exhausted.is_some() || self.sheet.is_outside(k) || apart(node, self.sheet.cell(k), self.point) {
             return;
@@ -155,7 +155,7 @@ impl Search<'_> {
         self.split(part, node, k, first);
     }
 
-    fn split(&mut self, part: &Part, node: &Node, k: usize, first: bool) {
+    fn split(&mut self, part: &CurvePart, node: &Node, k: usize, first: bool) {
         if first && node.can_split() {
             for half in node.halves(&part.view, part.rates) {
                 self.pair(part, &half, k);
@@ -173,7 +173,7 @@ impl Search<'_> {
     }
 
     /// Newton's method for S(u, v) = C(t), held in the patch and the section.
-    fn newton(&self, view: &View, uv: DVec2, t: f64) -> Option<Touch> {
+    fn newton(&self, view: &View, uv: DVec2, t: f64) -> Option<CurveTouch> {
         const STEPS: usize = 24;
         let (patch, (low, high)) = (&self.sheet.patch, view.section.range);
         let (mut uv, mut t) = (uv, t);
@@ -191,19 +191,19 @@ impl Search<'_> {
         Some(self.touch(view, t, uv))
     }
 
-    pub(super) fn touch(&self, view: &View, t: f64, uv: DVec2) -> Touch {
+    pub(super) fn touch(&self, view: &View, t: f64, uv: DVec2) -> CurveTouch {
         let (c, s) = (view.jet(t), self.sheet.patch.jet(uv));
         let sine = s.du.cross(s.dv).normalize_or_zero().dot(c.d1.normalize_or_zero()).abs();
-        Touch { t, uv, p: c.p, gap: c.p.distance(s.p), sine }
+        CurveTouch { t, uv, p: c.p, gap: c.p.distance(s.p), sine }
     }
 
     /// The least distance of a straight part and a flat cell, when it is within the tolerance.
-    fn lowest(&self, view: &View, node: &Node, cell: &Cell) -> Option<Touch> {
+    fn lowest(&self, view: &View, node: &Node, cell: &Cell) -> Option<CurveTouch> {
         const ROUNDS: usize = 32;
         let mut uv = cell.middle();
         let chord = node.p.1 - node.p.0;
         let mut share = 0.5;
-        let mut best: Option<Touch> = None;
+        let mut best: Option<CurveTouch> = None;
         for _ in 0..ROUNDS {
             let t = node.t.0 + (node.t.1 - node.t.0) * share;
             let p = view.point(t);
@@ -235,7 +235,7 @@ impl Search<'_> {
         let pieces = self.curve.pieces();
         for (section, touch) in &self.found {
             let t = pieces.sections[*section].to_common(touch.t);
-            out.push(Contact::Point(Touch { t, ..*touch }));
+            out.push(Contact::Point(CurveTouch { t, ..*touch }));
         }
         out
     }
@@ -286,7 +286,7 @@ fn crosses(node: &Node, cell: &Cell, point: f64) -> bool {
     rises && least * cosine > across * sine
 }
 
-fn within(node: &Node, cell: &Cell, touch: &Touch) -> bool {
+fn within(node: &Node, cell: &Cell, touch: &CurveTouch) -> bool {
     let slack = (node.t.1 - node.t.0) / 64.0;
     node.t.0 - slack <= touch.t && touch.t <= node.t.1 + slack && cell.holds(touch.uv)
 }

@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3};
 use crate::base::job;
 use crate::base::tolerance::{EPSILON, NUDGE};
 use crate::surface::intersect::pair::{Pair, Spot};
-use crate::surface::intersect::sheet::{Line, Patch};
+use crate::surface::intersect::sheet::{BorderLine, Patch};
 
 /// What steers the steps along an intersection.
 struct Marching {
@@ -114,8 +114,8 @@ impl Pair<'_> {
     }
 
     /// The first border on the way to a place outside: share of the way, whether it is of the first patch, and the border.
-    fn leaves(&self, here: &Spot, a: DVec2, b: DVec2) -> Option<(f64, bool, Line)> {
-        let mut best: Option<(f64, bool, Line)> = None;
+    fn leaves(&self, here: &Spot, a: DVec2, b: DVec2) -> Option<(f64, bool, BorderLine)> {
+        let mut best: Option<(f64, bool, BorderLine)> = None;
         for (first, patch, from, to) in [(true, self.a, here.a, a), (false, self.b, here.b, b)] {
             for line in patch.lines() {
                 let (x, y) = (line.inside(patch, from), line.inside(patch, to));

@@ -15,7 +15,7 @@ use crate::surface::intersect::pair::{Pair, Spot};
 use crate::surface::intersect::sheet::{Cell, Sheet};
 
 /// What limits the search for common places of two patches.
-struct PairSearch {
+struct PairLimits {
     /// Pairs looked at before giving up; a solved place counts as many as it costs.
     max_pairs: usize,
     /// What a place that is solved for, or a touch, costs in pairs.
@@ -34,7 +34,7 @@ struct PairSearch {
     least_cell_share: f64,
 }
 
-const SEARCH: PairSearch = PairSearch {
+const SEARCH: PairLimits = PairLimits {
     max_pairs: 300_000,
     pairs_per_solution: 2,
     flat_share: 0.25,
@@ -47,7 +47,7 @@ const SEARCH: PairSearch = PairSearch {
 
 /// What two patches have in common.
 #[derive(Debug, Default)]
-pub(crate) struct Common {
+pub(crate) struct CommonPlaces {
     pub branches: Vec<Branch>,
     /// Boxes of what touches without crossing.
     pub touches: Vec<Box3>,
@@ -62,7 +62,7 @@ pub(crate) enum Stopped {
     Lost(DVec3),
 }
 
-struct Search<'a> {
+struct PairSearch<'a> {
     a: &'a mut Sheet,
     b: &'a mut Sheet,
     point: f64,
@@ -71,15 +71,15 @@ struct Search<'a> {
     /// What stays within the tolerance for longer is no touch.
     long: f64,
     touched: Box3,
-    common: Common,
+    common: CommonPlaces,
     looked_at: usize,
 }
 
 /// The lines in which two patches meet, and where they touch.
-pub(crate) fn common(a: &mut Sheet, b: &mut Sheet, point: f64, long: f64) -> Result<Common, Stopped> {
+pub(crate) fn common(a: &mut Sheet, b: &mut Sheet, point: f64, long: f64) -> Result<CommonPlaces, Stopped> {
     let size = a.bounds().diagonal().min(b.bounds().diagonal());
     let (roots_a, roots_b) = (a.roots.clone(), b.roots.clone());
-    let mut search = Search { a, b, point, size, long, touched: Box3::EMPTY, common: Common::default(), looked_at: 0 };
+    let mut search = PairSearch { a, b, point, size, long, touched: Box3::EMPTY, common: CommonPlaces::default(), looked_at: 0 };
     for i in roots_a {
         for j in &roots_b {
             job::poll();
@@ -89,7 +89,7 @@ pub(crate) fn common(a: &mut Sheet, b: &mut Sheet, point: f64, long: f64) -> Res
     Ok(search.common)
 }
 
-impl Search<'_> {
+impl PairSearch<'_> {
     fn pair(&mut self, i: usize, j: usize) -> Result<(), Stopped> {
         self.looked_at += 1;
         let (x, y) = (self.a.cell(i), self.b.cell(j));

@@ -22,7 +22,7 @@ use crate::surface::intersect::sheet::{Cell, Patch, patches};
 use crate::surface::rails::side::Side;
 
 /// What limits the search for self-intersections.
-struct SelfIntersection {
+struct SelfLimits {
     /// Pairs that are looked at, at most.
     max_pairs: usize,
     /// Pairs that a place that is solved for counts as.
@@ -41,7 +41,7 @@ struct SelfIntersection {
     border_tolerances: f64,
 }
 
-const SEARCH: SelfIntersection = SelfIntersection {
+const SEARCH: SelfLimits = SelfLimits {
     max_pairs: 12_000,
     pairs_per_solution: 4,
     max_parts: 2_000,
@@ -66,24 +66,24 @@ pub struct Crossing {
 /// A place in which some of the faces cross themselves or each other, away from their borders; the first one found. Trimmed faces are
 /// left out. A touch is none, and of parts that come nearer to each other than about 1/256 of the whole the search may end without an answer.
 pub fn crossing(faces: &[Surface], tolerance: &Tolerance) -> Option<Crossing> {
-    let mut search = Search::new(faces, tolerance)?;
+    let mut search = SelfSearch::new(faces, tolerance)?;
     search.crossing()
 }
 
 /// What is known of a rectangle of a face.
-struct Part {
+struct FacePart {
     face: usize,
     patch: usize,
     cell: Cell,
     halves: Option<(usize, usize)>,
 }
 
-struct Search<'a> {
+struct SelfSearch<'a> {
     faces: &'a [Surface],
     patches: Vec<Patch>,
     breaks: Vec<(Vec<f64>, Vec<f64>)>,
     strips: Strips,
-    parts: Vec<Part>,
+    parts: Vec<FacePart>,
     roots: Vec<usize>,
     poles: Vec<DVec3>,
     point: f64,
@@ -95,7 +95,7 @@ struct Search<'a> {
 /// The work is at its end, or a crossing is found.
 struct Ended;
 
-impl<'a> Search<'a> {
+impl<'a> SelfSearch<'a> {
     fn new(faces: &'a [Surface], tolerance: &Tolerance) -> Option<Self> {
         let whole = faces.iter().fold(Box3::EMPTY, |all, s| all.union(s.hull()));
         let mut search = Self {
@@ -124,7 +124,7 @@ impl<'a> Search<'a> {
                 let cell = search.strips.cell(face, surface, patch.u, patch.v);
                 search.patches.push(patch);
                 search.roots.push(search.parts.len());
-                search.parts.push(Part { face, patch: search.patches.len() - 1, cell, halves: None });
+                search.parts.push(FacePart { face, patch: search.patches.len() - 1, cell, halves: None });
             }
         }
         Some(search)
@@ -216,7 +216,7 @@ impl<'a> Search<'a> {
     }
 
     /// Whether two parts of a face share places of its border lines, over a seam too.
-    fn beside(&self, x: &Part, y: &Part) -> bool {
+    fn beside(&self, x: &FacePart, y: &FacePart) -> bool {
         let closed = self.faces[x.face].closed();
         let near = |a: (f64, f64), b: (f64, f64)| a.0 <= b.1 + EPSILON && b.0 <= a.1 + EPSILON;
         let touch = |a: (f64, f64), b: (f64, f64), round: bool| {
@@ -251,7 +251,7 @@ impl<'a> Search<'a> {
             let cell = self.strips.cell(face, &self.patches[patch].surface, u, v);
             let (across, along) = self.faces[face].curves_of_a_point();
             self.looked_at += (self.strips.len() - before) * (across + along);
-            self.parts.push(Part { face, patch, cell, halves: None });
+            self.parts.push(FacePart { face, patch, cell, halves: None });
         }
         self.parts[k].halves = Some((at, at + 1));
         self.parts[k].halves

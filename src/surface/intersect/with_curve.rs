@@ -14,7 +14,7 @@ use crate::network::{Chain, meet as meet_chains};
 use crate::surface::closest::nearest::{Nearest, closest};
 use crate::surface::core::surface::Surface;
 use crate::surface::data::kind::Domain;
-use crate::surface::intersect::curve_patch::{Contact, Touch, contacts};
+use crate::surface::intersect::curve_patch::{Contact, CurveTouch, contacts};
 use crate::surface::intersect::sheet::{Patch, Sheet, grounded, patches};
 use crate::surface::rails::side::Side;
 use crate::surface::trims::trim::with_loops;
@@ -75,11 +75,11 @@ fn with_one(chain: &Chain, surface: &Surface, tolerance: &Tolerance) -> Result<V
     }
     let length = curve.length();
     let fraction = |t: f64| curve.length_at(t) / length;
-    let (mut overlaps, mut points): (Vec<(f64, f64)>, Vec<Touch>) = (Vec::new(), Vec::new());
+    let (mut overlaps, mut points): (Vec<(f64, f64)>, Vec<CurveTouch>) = (Vec::new(), Vec::new());
     for contact in found {
         match contact {
             Contact::Overlap { t } => overlaps.push((fraction(t.0), fraction(t.1))),
-            Contact::Point(touch) => points.push(Touch { t: fraction(touch.t), ..touch }),
+            Contact::Point(touch) => points.push(CurveTouch { t: fraction(touch.t), ..touch }),
         }
     }
     let near = tolerance.point / length;
@@ -128,15 +128,15 @@ fn united(mut overlaps: Vec<(f64, f64)>, near: f64) -> Vec<(f64, f64)> {
 }
 
 /// Each place once: the nearest of those that are one meeting.
-fn distinct(mut points: Vec<Touch>, length: f64, tolerance: &Tolerance) -> Vec<Touch> {
+fn distinct(mut points: Vec<CurveTouch>, length: f64, tolerance: &Tolerance) -> Vec<CurveTouch> {
     const SAME: f64 = 4.0;
     points.sort_by(|a, b| a.gap.total_cmp(&b.gap).then(a.t.total_cmp(&b.t)));
-    let mut kept: Vec<Touch> = Vec::new();
+    let mut kept: Vec<CurveTouch> = Vec::new();
     for touch in points {
         // Where the curve leaves the surface slowly all of a long way is within the tolerance.
         let slow = if touch.gap > tolerance.rounding { 2.0 * tolerance.point / touch.sine.max(ROUNDING_SHARE) } else { 0.0 };
         let reach = slow.max(SAME * tolerance.point);
-        let same = |k: &Touch| (k.t - touch.t).abs() * length <= reach && k.p.distance(touch.p) <= reach;
+        let same = |k: &CurveTouch| (k.t - touch.t).abs() * length <= reach && k.p.distance(touch.p) <= reach;
         if !kept.iter().any(same) {
             kept.push(touch);
         }

@@ -45,20 +45,20 @@ pub(crate) fn with_loops(
     let below = whole(surface, tolerance);
     let (ground, notes) = offset(&below, distance, origin, tolerance)?;
     let ground = ground.untrimmed();
-    let carrier = Carrier { below: &below, ground: &ground, distance, tolerance };
+    let carrier = LoopOffset { below: &below, ground: &ground, distance, tolerance };
     let loops: Result<Vec<TrimLoop>> = trim_loops.iter().zip(copies).map(|(trim_loop, row)| carrier.trim_loop(trim_loop, row)).collect();
     Ok((assembled(&ground, loops?, origin)?, notes))
 }
 
 /// A surface and its offset.
-struct Carrier<'a> {
+struct LoopOffset<'a> {
     below: &'a Surface,
     ground: &'a Surface,
     distance: f64,
     tolerance: &'a Tolerance,
 }
 
-impl Carrier<'_> {
+impl LoopOffset<'_> {
     /// The place on the offset above a place of the surface.
     fn place(&self, uv: DVec2) -> DVec2 {
         let p = self.below.point(uv.x, uv.y) + self.below.normal(uv.x, uv.y) * self.distance;

@@ -17,7 +17,7 @@ use crate::surface::faults::{WallEdge, WallFault};
 use crate::surface::intersect::with_surfaces::with_surfaces;
 use crate::surface::offset::boundary::{self, whole};
 use crate::surface::offset::extended::longer;
-use crate::surface::offset::joint::{self, Bend, Joint, Sheet, Use};
+use crate::surface::offset::joint::{self, Bend, FaceSheet, Joint, Use};
 use crate::surface::rails::side::Side;
 use crate::surface::trims::divide::divide;
 use crate::surface::trims::project::{Way, project};
@@ -44,7 +44,7 @@ pub(crate) struct Layer {
 
 /// A side in the making.
 struct Making<'a> {
-    sheet: &'a Sheet,
+    sheet: &'a FaceSheet,
     distance: f64,
     origin: Origin,
     tolerance: &'a Tolerance,
@@ -57,7 +57,7 @@ struct Making<'a> {
 }
 
 /// The faces of a sheet at a distance; E671 where those of neighbours do not meet.
-pub(crate) fn layer(sheet: &Sheet, distance: f64, origin: Origin, tolerance: &Tolerance) -> Result<Layer> {
+pub(crate) fn layer(sheet: &FaceSheet, distance: f64, origin: Origin, tolerance: &Tolerance) -> Result<Layer> {
     if distance == 0.0 {
         return Ok(Layer {
             faces: sheet.faces.iter().map(|face| face.with_origin(origin)).collect(),

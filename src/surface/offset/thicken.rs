@@ -17,7 +17,7 @@ use crate::surface::faults::{WallEdge, WallFault};
 use crate::surface::offset::boundary::{Boundary, boundaries, curve};
 use crate::surface::offset::build::{offset, with_loops};
 use crate::surface::offset::exact::{is_exact, parts_of};
-use crate::surface::offset::joint::{Bend, Sheet};
+use crate::surface::offset::joint::{Bend, FaceSheet};
 use crate::surface::offset::shell::layer;
 use crate::surface::rails::side::{Side, between};
 use crate::surface::shapes::nurbs::NurbsSurface;
@@ -44,7 +44,7 @@ pub fn thicken(surface: &Surface, (below, above): (f64, f64), origin: Origin, to
     for row in boundaries(surface, &trim_loops, tolerance) {
         let made =
             row.iter().map(|boundary| boundary.as_ref().map(|boundary| rim(boundary, (below, above), origin, tolerance)).transpose());
-        let made: Vec<Option<Rim>> = made.collect::<Result<_>>()?;
+        let made: Vec<Option<RimFace>> = made.collect::<Result<_>>()?;
         low.push(made.iter().map(|rim| rim.as_ref().map(|rim| rim.low.clone())).collect());
         high.push(made.iter().map(|rim| rim.as_ref().map(|rim| rim.high.clone())).collect());
         rims.extend(made.into_iter().flatten().map(|rim| rim.face));
@@ -69,14 +69,14 @@ fn moved(surface: &Surface, distance: f64, origin: Origin, tolerance: &Tolerance
 }
 
 /// What stands along a border, with its two long sides.
-struct Rim {
+struct RimFace {
     low: Chain,
     high: Chain,
     face: Surface,
 }
 
 /// The strip along the normals of a face beside its border.
-fn rim(boundary: &Boundary, (below, above): (f64, f64), origin: Origin, tolerance: &Tolerance) -> Result<Rim> {
+fn rim(boundary: &Boundary, (below, above): (f64, f64), origin: Origin, tolerance: &Tolerance) -> Result<RimFace> {
     let [low, high] = boundary.copies([below, above], origin, tolerance)?;
     let n = low.poles.len();
     let net = NurbsSurface {
@@ -86,7 +86,7 @@ fn rim(boundary: &Boundary, (below, above): (f64, f64), origin: Origin, toleranc
         counts: (n, 2),
     };
     let face = net.surface(SurfaceKind::Ruled, origin, tolerance);
-    Ok(Rim { low: curve(low, origin), high: curve(high, origin), face })
+    Ok(RimFace { low: curve(low, origin), high: curve(high, origin), face })
 }
 
 /// Ruled faces between the borders of two faces that have the same ones, named by curves.
@@ -170,7 +170,7 @@ pub fn thicken_all(
         let face = if turned(faces, closed) { face.flipped() } else { face.clone() };
         return thicken(&face, (below, above), origin, tolerance);
     }
-    let mut sheet = Sheet::new(faces, near, origin, tolerance)?;
+    let mut sheet = FaceSheet::new(faces, near, origin, tolerance)?;
     let closed = sheet.joints.iter().all(|joint| joint.bend != Bend::Free);
     // Which side of one piece is that of another one follows from neither.
     if below != -above
@@ -182,7 +182,7 @@ pub fn thicken_all(
     }
     if turned(&sheet.faces, closed) {
         let other: Vec<Surface> = sheet.faces.iter().map(Surface::flipped).collect();
-        sheet = Sheet::new(&other, near, origin, tolerance)?;
+        sheet = FaceSheet::new(&other, near, origin, tolerance)?;
     }
     let (inner, outer) = (layer(&sheet, below, origin, tolerance)?, layer(&sheet, above, origin, tolerance)?);
     let mut notes = [inner.notes, outer.notes].concat();

@@ -6,7 +6,7 @@ use crate::base::fault::{Fault, Result};
 use crate::base::origin::Origin;
 use crate::surface::faults::{BlendFault, NoBlend};
 use crate::surface::rolling::ball::Ball;
-use crate::surface::rolling::station::Station;
+use crate::surface::rolling::station::BallStation;
 
 /// Halvings in search of a radius that fits.
 const SMALLER: usize = 24;
@@ -23,7 +23,12 @@ const FROM: f64 = 0.5;
 
 /// The balls of a radius at places along the edge; E673 with the largest radius where they do not fit: one with which `is_made`
 /// says that the rounding can be made.
-pub(crate) fn stations(ball: &Ball, radius: f64, origin: Origin, is_made: impl Fn(Vec<Station>, f64) -> bool) -> Result<Vec<Station>> {
+pub(crate) fn stations(
+    ball: &Ball,
+    radius: f64,
+    origin: Origin,
+    is_made: impl Fn(Vec<BallStation>, f64) -> bool,
+) -> Result<Vec<BallStation>> {
     let of = |radius: f64| all(ball, radius);
     of(radius).map_err(|at| {
         let mut fits = radius;
@@ -63,7 +68,7 @@ pub(crate) fn above_made(
     radius: f64,
     at: DVec3,
     origin: Origin,
-    is_made: impl Fn(Vec<Station>, f64) -> bool,
+    is_made: impl Fn(Vec<BallStation>, f64) -> bool,
 ) -> Option<Fault> {
     let makes = |radius: f64| all(ball, radius).is_ok_and(|all| is_made(all, radius));
     let (mut low, mut high) = (FROM * radius, radius);
@@ -78,7 +83,7 @@ pub(crate) fn above_made(
 }
 
 /// The balls of a radius, beyond the ends of an open edge too; where there are none, the place.
-fn all(ball: &Ball, radius: f64) -> std::result::Result<Vec<Station>, DVec3> {
+fn all(ball: &Ball, radius: f64) -> std::result::Result<Vec<BallStation>, DVec3> {
     let mut all = ball.stations(radius)?;
     if !ball.closed {
         ball.run_out(radius, &mut all);

@@ -18,13 +18,13 @@ use crate::surface::data::jet::Jet2;
 use crate::surface::data::one_sided::OneSided;
 use crate::surface::rails::rail::Rail;
 use crate::surface::shapes::blend_terms::{active_lines, with_slopes};
-use crate::surface::shapes::weights::{Axis, Weights};
+use crate::surface::shapes::weights::{BlendAxis, Weights};
 
 /// A surface blended from a grid of curves.
 #[derive(Clone, Debug)]
 pub struct Blend {
-    u: Axis,
-    v: Axis,
+    u: BlendAxis,
+    v: BlendAxis,
     /// F_i, one per node of `u`, or none (ruled).
     along_v: Vec<Rail>,
     /// G_j, one per node of `v`.
@@ -39,7 +39,7 @@ impl Blend {
     /// A surface from its rails: `along_v` one per node of `u` (or none: ruled), `along_u` one per node of `v`.
     ///
     /// The node of two curves is taken in the middle of what the two say, a pole's where it is.
-    pub fn new(u: Axis, v: Axis, along_v: Vec<Rail>, along_u: Vec<Rail>) -> Self {
+    pub fn new(u: BlendAxis, v: BlendAxis, along_v: Vec<Rail>, along_u: Vec<Rail>) -> Self {
         let mut corners = Vec::with_capacity(along_v.len() * along_u.len());
         for (g, &y) in along_u.iter().zip(&v.nodes) {
             for (f, &x) in along_v.iter().zip(&u.nodes) {
@@ -54,7 +54,7 @@ impl Blend {
     }
 
     /// Parameters and rule across u (first) and v (second).
-    pub fn axes(&self) -> (&Axis, &Axis) {
+    pub fn axes(&self) -> (&BlendAxis, &BlendAxis) {
         (&self.u, &self.v)
     }
 
@@ -87,7 +87,7 @@ impl Blend {
     /// Point and derivatives, from the given sides where they jump.
     pub fn jet(&self, u: f64, v: f64, side: (OneSided, OneSided)) -> Jet2 {
         let (a, b) = (self.u.weights(u, side.0), self.v.weights(v, side.1));
-        let mut row = Row::default();
+        let mut row = BlendSum::default();
         let along_v = |i: usize| self.along_v[i].jet(v, side.1);
         let along_u = |j: usize| self.along_u[j].jet(u, side.0);
         if self.u.slopes().is_empty() {
@@ -106,7 +106,7 @@ impl Blend {
     }
 
     /// Adds the sums over the terms along v and the nodes; `along_v` by place among the active terms, and by term.
-    fn row(&self, a: &Weights, b: &Weights, along_v: impl Fn(usize, usize) -> Jet, row: &mut Row) {
+    fn row(&self, a: &Weights, b: &Weights, along_v: impl Fn(usize, usize) -> Jet, row: &mut BlendSum) {
         if self.along_v.is_empty() {
             return;
         }
@@ -129,7 +129,7 @@ impl Blend {
 
     /// Interior parameters where the surface is less than smooth, in u (first) and v (second).
     pub fn breaks(&self) -> (Vec<f64>, Vec<f64>) {
-        let inner = |axis: &Axis, rails: &[Rail]| {
+        let inner = |axis: &BlendAxis, rails: &[Rail]| {
             let mut all = if axis.is_piecewise() { axis.nodes.clone() } else { Vec::new() };
             rails.iter().for_each(|rail| rail.breaks(&mut all));
             tidy(all, SLIVER)
@@ -139,7 +139,7 @@ impl Blend {
 
     /// Interior network lines and kinks.
     pub fn cells(&self) -> (Vec<f64>, Vec<f64>) {
-        let inner = |axis: &Axis, rails: &[Rail]| {
+        let inner = |axis: &BlendAxis, rails: &[Rail]| {
             let kinks = rails.iter().flat_map(Rail::kinks).map(|k| k.0);
             tidy(axis.nodes.iter().copied().chain(kinks).collect(), SLIVER)
         };
@@ -173,9 +173,9 @@ impl Blend {
 
 /// The sum under construction.
 #[derive(Default)]
-pub(super) struct Row(pub(super) Jet2);
+pub(super) struct BlendSum(pub(super) Jet2);
 
-impl Row {
+impl BlendSum {
     pub(super) fn add_along_v(&mut self, f: &Jet, a: &[f64; 3]) {
         let jet = &mut self.0;
         jet.p += f.p * a[0];
@@ -209,7 +209,7 @@ mod tests {
     fn grid_of(f: Formula, us: &[f64], vs: &[f64], rule: Rule) -> Blend {
         let along_v = us.iter().map(|&at| Rail::Formula { f, at, along_u: false }).collect();
         let along_u = vs.iter().map(|&at| Rail::Formula { f, at, along_u: true }).collect();
-        Blend::new(Axis::new(us.to_vec(), rule), Axis::new(vs.to_vec(), rule), along_v, along_u)
+        Blend::new(BlendAxis::new(us.to_vec(), rule), BlendAxis::new(vs.to_vec(), rule), along_v, along_u)
     }
 
     fn check(f: Formula, samples: &[(f64, f64, [f64; 3], f64)]) {

@@ -6,7 +6,7 @@ use crate::base::par;
 use crate::geometry::Jet;
 use crate::surface::data::jet::Jet2;
 use crate::surface::data::one_sided::OneSided;
-use crate::surface::shapes::blend::{Blend, Row};
+use crate::surface::shapes::blend::{Blend, BlendSum};
 use crate::surface::shapes::blend_terms::{all_terms, asked_terms};
 use crate::surface::shapes::weights::Weights;
 
@@ -65,7 +65,7 @@ impl Blend {
             let mut along_v: Vec<Vec<Jet>> = all_terms(self.axes().0, along_v);
             along_v.iter_mut().enumerate().for_each(|(i, f)| self.less_nodes(i, b, &mut f[0]));
             for (c, a) in a.iter().enumerate() {
-                let mut row = Row::default();
+                let mut row = BlendSum::default();
                 if !along_v.is_empty() {
                     a.iter().for_each(|(i, w)| row.add_along_v(&along_v[i][0], w));
                 }

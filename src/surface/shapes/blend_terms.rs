@@ -3,10 +3,10 @@
 use glam::DVec3;
 
 use crate::geometry::Jet;
-use crate::surface::shapes::weights::{Axis, Weights};
+use crate::surface::shapes::weights::{BlendAxis, Weights};
 
 /// The lines of a spline's four active terms in a cell, each curve evaluated once.
-pub(super) fn active_lines(axis: &Axis, cell: usize, curve: impl Fn(usize) -> Jet) -> [Jet; 4] {
+pub(super) fn active_lines(axis: &BlendAxis, cell: usize, curve: impl Fn(usize) -> Jet) -> [Jet; 4] {
     let mut lines = [Jet::default(); 4];
     let (first, second) = (&axis.slopes()[cell], &axis.slopes()[cell + 1]);
     for i in 0..axis.nodes.len() {
@@ -46,7 +46,7 @@ impl Terms for Jet {
 }
 
 /// Rows of values, one per node of an axis (or none), and after them those of the slopes across the nodes.
-pub(super) fn all_terms<T: Terms>(axis: &Axis, mut rows: Vec<Vec<T>>) -> Vec<Vec<T>> {
+pub(super) fn all_terms<T: Terms>(axis: &BlendAxis, mut rows: Vec<Vec<T>>) -> Vec<Vec<T>> {
     let width = rows.first().map_or(0, Vec::len);
     if !rows.is_empty() {
         for slope in axis.slopes() {
@@ -61,7 +61,7 @@ pub(super) fn all_terms<T: Terms>(axis: &Axis, mut rows: Vec<Vec<T>>) -> Vec<Vec
 }
 
 /// The same of the terms that some blending values ask for, from the `n` curves that these are sums of; the others are empty.
-pub(super) fn asked_terms<T: Terms>(axis: &Axis, n: usize, weights: &[Weights], curve: impl Fn(usize) -> Vec<T>) -> Vec<Vec<T>> {
+pub(super) fn asked_terms<T: Terms>(axis: &BlendAxis, n: usize, weights: &[Weights], curve: impl Fn(usize) -> Vec<T>) -> Vec<Vec<T>> {
     if axis.slopes().is_empty() || n == 0 {
         return (0..n).map(curve).collect();
     }
@@ -82,7 +82,7 @@ pub(super) fn asked_terms<T: Terms>(axis: &Axis, n: usize, weights: &[Weights], 
 }
 
 /// Nodes, `i` fastest, with their slopes in u, in v and in both.
-pub(super) fn with_slopes(nodes: &[DVec3], width: usize, u: &Axis, v: &Axis) -> Vec<DVec3> {
+pub(super) fn with_slopes(nodes: &[DVec3], width: usize, u: &BlendAxis, v: &BlendAxis) -> Vec<DVec3> {
     if width == 0 || (u.slopes().is_empty() && v.slopes().is_empty()) {
         return nodes.to_vec();
     }

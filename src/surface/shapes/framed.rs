@@ -13,7 +13,7 @@ use crate::surface::data::jet::Jet2;
 use crate::surface::data::one_sided::OneSided;
 use crate::surface::rails::line::Line;
 use crate::surface::rails::rail::Rail;
-use crate::surface::shapes::matrices::{At, Matrices, Over, times};
+use crate::surface::shapes::matrices::{Matrices, MatrixJet, Over, times};
 
 /// Rows of points made by one thread at a time.
 const ROWS: usize = 16;
@@ -33,7 +33,7 @@ crate::content!(Framed { path, turn, profile, foot });
 #[derive(Clone, Debug)]
 pub struct FramedStrip {
     path: Line,
-    middle: At,
+    middle: MatrixJet,
     over: Over,
 }
 
@@ -49,7 +49,7 @@ impl Framed {
         &self.profile
     }
 
-    fn placed(&self, m: &Jet, [k, k1, k2]: &At, g: &Jet) -> Jet2 {
+    fn placed(&self, m: &Jet, [k, k1, k2]: &MatrixJet, g: &Jet) -> Jet2 {
         let arm = g.p - self.foot;
         Jet2 { p: m.p + *k * arm, du: m.d1 + *k1 * arm, dv: *k * g.d1, duu: m.d2 + *k2 * arm, duv: *k1 * g.d1, dvv: *k * g.d2 }
     }
@@ -96,7 +96,7 @@ impl Framed {
 
     /// Jets of the tensor grid, u fastest.
     pub fn jets(&self, us: &[(f64, OneSided)], vs: &[(f64, OneSided)], out: &mut Vec<Jet2>) {
-        let columns: Vec<(Jet, At)> = us.iter().map(|&(u, side)| (self.path.jet(u, side), self.turn.at(u, side))).collect();
+        let columns: Vec<(Jet, MatrixJet)> = us.iter().map(|&(u, side)| (self.path.jet(u, side), self.turn.at(u, side))).collect();
         for &(v, side) in vs {
             let g = self.profile.jet(v, side);
             out.extend(columns.iter().map(|(m, k)| self.placed(m, k, &g)));

@@ -17,17 +17,17 @@ const DEGREE: usize = 8;
 const DEPTH: usize = 12;
 
 /// Coefficients of the powers of x, −1…1 over the piece.
-type Piece = Vec<DMat3>;
+type MatrixPiece = Vec<DMat3>;
 
 /// K(u) for u from the first stop to the last one.
 #[derive(Clone, Debug)]
 pub struct Matrices {
     stops: Vec<f64>,
-    pieces: Vec<Piece>,
+    pieces: Vec<MatrixPiece>,
 }
 
 /// A matrix and its first two derivatives: values at one parameter.
-pub type At = [DMat3; 3];
+pub type MatrixJet = [DMat3; 3];
 
 /// The same over an interval: bounds of the columns, then of those of both derivatives.
 pub type Over = [[Interval3; 3]; 3];
@@ -80,7 +80,7 @@ impl Matrices {
     }
 
     /// Value and derivatives, from the given side at a stop.
-    pub fn at(&self, u: f64, side: OneSided) -> At {
+    pub fn at(&self, u: f64, side: OneSided) -> MatrixJet {
         let k = self.piece_at(u, side);
         let (a, b) = (self.stops[k], self.stops[k + 1]);
         let by = 2.0 / (b - a);
@@ -150,7 +150,7 @@ fn largest(m: DMat3) -> f64 {
 }
 
 /// The polynomial through the Chebyshev points, by divided differences and then by powers.
-fn interpolated((a, b): (f64, f64), of: &mut dyn FnMut(f64) -> DMat3) -> Piece {
+fn interpolated((a, b): (f64, f64), of: &mut dyn FnMut(f64) -> DMat3) -> MatrixPiece {
     let at = |k: usize| match k {
         0 => a,
         DEGREE => b,
@@ -176,19 +176,19 @@ fn interpolated((a, b): (f64, f64), of: &mut dyn FnMut(f64) -> DMat3) -> Piece {
 }
 
 /// Without the highest powers that are rounding alone.
-fn trimmed(mut piece: Piece) -> Piece {
+fn trimmed(mut piece: MatrixPiece) -> MatrixPiece {
     while piece.len() > 1 && piece.last().is_some_and(|m| largest(*m) <= EPSILON) {
         piece.pop();
     }
     piece
 }
 
-fn value(piece: &Piece, x: f64) -> DMat3 {
+fn value(piece: &MatrixPiece, x: f64) -> DMat3 {
     piece.iter().rev().fold(DMat3::ZERO, |sum, c| sum * x + *c)
 }
 
 /// Value, first derivative and half the second one.
-fn taylor(piece: &Piece, x: f64) -> [DMat3; 3] {
+fn taylor(piece: &MatrixPiece, x: f64) -> [DMat3; 3] {
     let mut t = [DMat3::ZERO; 3];
     for c in piece.iter().rev() {
         t[2] = t[2] * x + t[1];
@@ -199,7 +199,7 @@ fn taylor(piece: &Piece, x: f64) -> [DMat3; 3] {
 }
 
 /// The same polynomial in powers of x − middle.
-fn shifted(piece: &Piece, middle: f64) -> Piece {
+fn shifted(piece: &MatrixPiece, middle: f64) -> MatrixPiece {
     let mut c = piece.clone();
     for k in 0..c.len() {
         for n in (k..c.len() - 1).rev() {

@@ -42,7 +42,7 @@ impl Rule {
 
 /// Parameters of the curves across one direction, ascending from 0 to 1, and the rule between them.
 #[derive(Clone, Debug)]
-pub struct Axis {
+pub struct BlendAxis {
     /// u_0 = 0 … u_M = 1.
     pub nodes: Vec<f64>,
     /// The rule.
@@ -52,7 +52,7 @@ pub struct Axis {
 }
 
 crate::content_of_word!(Rule);
-crate::content!(Axis { nodes, rule } but { slopes });
+crate::content!(BlendAxis { nodes, rule } but { slopes });
 
 /// Terms that take part at one parameter, each with value, first and second derivative of its function.
 #[derive(Clone, Debug)]
@@ -106,7 +106,7 @@ impl Weights {
     }
 }
 
-impl Axis {
+impl BlendAxis {
     /// An axis with what its rule needs to be evaluated.
     pub fn new(nodes: Vec<f64>, rule: Rule) -> Self {
         let mut slopes = if rule.is_spline() { cardinal::slopes(&nodes, rule == Rule::Periodic) } else { Vec::new() };
@@ -321,7 +321,7 @@ mod tests {
     #[test]
     fn weights_sum_to_one_and_are_exact_at_nodes() {
         for rule in [Rule::Linear, Rule::Cubic, Rule::Lagrange, Rule::Spline, Rule::Periodic] {
-            let axis = Axis::new(vec![0.0, 0.15, 0.4, 0.55, 0.6, 0.83, 1.0], rule);
+            let axis = BlendAxis::new(vec![0.0, 0.15, 0.4, 0.55, 0.6, 0.83, 1.0], rule);
             for i in 0..=100 {
                 for side in [OneSided::After, OneSided::Before] {
                     let x = f64::from(i) / 100.0;
@@ -342,7 +342,7 @@ mod tests {
     #[test]
     fn derivatives_are_difference_quotients() {
         for rule in [Rule::Linear, Rule::Cubic, Rule::Lagrange, Rule::Spline, Rule::Periodic] {
-            let axis = Axis::new(vec![0.0, 0.2, 0.5, 1.0], rule);
+            let axis = BlendAxis::new(vec![0.0, 0.2, 0.5, 1.0], rule);
             let h = 1e-5;
             for x in [0.05, 0.13, 0.3, 0.47, 0.7, 0.9] {
                 let (a, b, c) =
@@ -359,7 +359,7 @@ mod tests {
     #[test]
     fn splines_are_smooth_to_second_order_and_their_ranges_hold() {
         for rule in [Rule::Spline, Rule::Periodic] {
-            let axis = Axis::new(vec![0.0, 0.15, 0.4, 0.55, 0.6, 0.83, 1.0], rule);
+            let axis = BlendAxis::new(vec![0.0, 0.15, 0.4, 0.55, 0.6, 0.83, 1.0], rule);
             let last = axis.nodes.len() - 1;
             // The curve at a seam is counted at both of its nodes.
             let round = rule == Rule::Periodic;
@@ -390,7 +390,7 @@ mod tests {
     #[test]
     fn lebesgue_constants_of_equal_nodes() {
         // Closed values for equally spaced nodes: degree 2 gives 1.25, degree 6 gives 4.549 [Brutman 1997, table 1].
-        let equal = |n: usize| Axis::new((0..=n).map(|k| k as f64 / n as f64).collect(), Rule::Lagrange).lebesgue();
+        let equal = |n: usize| BlendAxis::new((0..=n).map(|k| k as f64 / n as f64).collect(), Rule::Lagrange).lebesgue();
         assert!((equal(1) - 1.0).abs() < 1e-12);
         assert!((equal(2) - 1.25).abs() < 1e-9);
         assert!((equal(6) - 4.549).abs() < 1e-3);

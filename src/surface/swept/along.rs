@@ -68,7 +68,7 @@ fn rounded(profile: &Chain, path: &Chain, settings: &Settings, tolerance: &Toler
     let mut way = Rail::new(path.clone(), Map::new(us, fractions, Reparam::Linear, false));
     way.set_kinks(turned.corners.clone());
     let corners = turned.corners.iter().map(|c| c.0).collect();
-    let frame = Frame { turn: turned.turn.clone(), last: legs.last(), corners, cut: false, closed };
+    let frame = PathFrame { turn: turned.turn.clone(), last: legs.last(), corners, cut: false, closed };
     let surface = along_way(profile, path, way, &turned.crossings, frame, settings.origin, tolerance);
     sweeps_area(&surface, profile, tolerance)?;
     let mut notes = folds(&surface, path, &|u| turned.fraction(u), tolerance);
@@ -97,7 +97,7 @@ fn framed(profile: &Chain, path: &Chain, settings: &Settings, tolerance: &Tolera
     let mut legs = Legs::new(path, settings.twist, tolerance)?;
     let turn = legs.mitred()?;
     let closed = legs.closes(settings.twist, tolerance);
-    let frame = Frame { turn, last: legs.last(), corners: legs.corners(), cut: legs.cut_at_start(), closed };
+    let frame = PathFrame { turn, last: legs.last(), corners: legs.corners(), cut: legs.cut_at_start(), closed };
     let surface = made(profile, path, frame, origin, tolerance);
     sweeps_area(&surface, profile, tolerance)?;
     Ok(surface)
@@ -120,12 +120,12 @@ pub fn moved_by(
     }
     let closed = path.is_closed(tolerance);
     let corners = path.kinks(tolerance).into_iter().filter(|f| *f > 0.0).collect();
-    let frame = Frame { turn: all, last: turn(1.0), corners, cut: false, closed };
+    let frame = PathFrame { turn: all, last: turn(1.0), corners, cut: false, closed };
     Ok((made(profile, path, frame, settings.origin, tolerance), Vec::new()))
 }
 
 /// How a profile moves.
-struct Frame {
+struct PathFrame {
     turn: Matrices,
     /// The rotation at the end.
     last: DMat3,
@@ -136,14 +136,14 @@ struct Frame {
     closed: bool,
 }
 
-fn made(profile: &Chain, path: &Chain, frame: Frame, origin: Origin, tolerance: &Tolerance) -> Surface {
+fn made(profile: &Chain, path: &Chain, frame: PathFrame, origin: Origin, tolerance: &Tolerance) -> Surface {
     let mut way = Rail::new(path.clone(), Map::identity());
     way.set_kinks(frame.corners.iter().map(|f| (*f, *f)).collect());
     along_way(profile, path, way, &[], frame, origin, tolerance)
 }
 
 /// `across` are fractions of the profile at which the surface is parted beside its kinks.
-fn along_way(profile: &Chain, path: &Chain, way: Rail, across: &[f64], frame: Frame, origin: Origin, tolerance: &Tolerance) -> Surface {
+fn along_way(profile: &Chain, path: &Chain, way: Rail, across: &[f64], frame: PathFrame, origin: Origin, tolerance: &Tolerance) -> Surface {
     let (rail, mut kinks) = kinked(profile, tolerance);
     let near = tolerance.point / profile.length();
     kinks.extend(across.iter().copied().filter(|f| kinks.iter().all(|k| (k - f).abs() > near)).collect::<Vec<_>>());

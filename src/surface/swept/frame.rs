@@ -16,10 +16,10 @@ const ROWS: usize = 6;
 const DEPTH: usize = 12;
 
 /// A place of a path: point and unit tangent.
-pub type Place = (DVec3, DVec3);
+pub type PathPlace = (DVec3, DVec3);
 
 /// Point and unit tangent at a fraction, from the side before it where they jump.
-pub fn place(path: &Chain, f: f64, before: bool) -> Place {
+pub fn place(path: &Chain, f: f64, before: bool) -> PathPlace {
     let jet = if before { path.jet_before(f) } else { path.jet(f) };
     (jet.p, jet.d1.normalize_or_zero())
 }
@@ -31,7 +31,7 @@ fn mirrored(v: DVec3, by: DVec3) -> DVec3 {
 }
 
 /// A vector normal to the first tangent, transported to the second place without turning about the way.
-pub fn step(from: Place, to: Place, normal: DVec3) -> DVec3 {
+pub fn step(from: PathPlace, to: PathPlace, normal: DVec3) -> DVec3 {
     let by = to.0 - from.0;
     if by == DVec3::ZERO {
         return bent(from.1, to.1, normal);

@@ -21,7 +21,7 @@ use crate::surface::trims::faces::{Edge, Half, components, followers, is_plane, 
 use crate::surface::trims::trim_loop::shifts;
 
 /// The loops of a face, each half edge with the turns by which it is moved in (u, v).
-pub(crate) type Face = Vec<Vec<(Half, DVec2)>>;
+pub(crate) type FaceLoops = Vec<Vec<(Half, DVec2)>>;
 
 /// Ends of twins are no farther from each other than this, in (u, v) after whole turns.
 const NEAR: f64 = 0.1;
@@ -199,7 +199,7 @@ impl<'a> Cells<'a> {
     }
 
     /// The face around a place: that of the smallest cell whose outer loop goes round it.
-    pub fn face(&self, foot: DVec2) -> Result<Option<Face>> {
+    pub fn face(&self, foot: DVec2) -> Result<Option<FaceLoops>> {
         self.at(foot).map(|c| self.joined(c).map(|(face, _)| face)).transpose()
     }
 
@@ -241,7 +241,7 @@ impl<'a> Cells<'a> {
     }
 
     /// The faces that some cells make, each once; they go on over no piece but those of seams.
-    pub fn faces_of(&self, kept: &[bool]) -> Result<Vec<Face>> {
+    pub fn faces_of(&self, kept: &[bool]) -> Result<Vec<FaceLoops>> {
         let (mut found, mut seen) = (Vec::new(), BTreeSet::new());
         for c in (0..self.cells.len()).filter(|c| kept[*c]) {
             if !seen.contains(&c) {
@@ -254,7 +254,7 @@ impl<'a> Cells<'a> {
     }
 
     /// All faces, each once.
-    pub fn faces(&self) -> Result<Vec<Face>> {
+    pub fn faces(&self) -> Result<Vec<FaceLoops>> {
         self.faces_of(&vec![true; self.cells.len()])
     }
 
@@ -267,7 +267,7 @@ impl<'a> Cells<'a> {
     }
 
     /// The face of a cell with what lies beyond seams, which are no borders of it, and the cells that it is made of.
-    fn joined(&self, first: usize) -> Result<(Face, BTreeSet<usize>)> {
+    fn joined(&self, first: usize) -> Result<(FaceLoops, BTreeSet<usize>)> {
         let (mut by, mut open) = (BTreeMap::from([(first, DVec2::ZERO)]), VecDeque::from([first]));
         let mut between: Vec<(usize, usize)> = Vec::new();
         while let Some(cell) = open.pop_front() {

@@ -17,7 +17,7 @@ use crate::surface::data::kind::Domain;
 use crate::surface::faults::SurfaceFault;
 use crate::surface::rails::side::{Border, Side, between};
 use crate::surface::rails::trim_curve::{Pcurve, TrimCurve};
-use crate::surface::trims::pcurve::{Off, is_pole};
+use crate::surface::trims::pcurve::{OffSurface, is_pole};
 use crate::surface::trims::project::{Way, project};
 use crate::surface::trims::shared_runs;
 use crate::surface::trims::trim_loop::{TrimLoop, natural};
@@ -292,7 +292,7 @@ impl DividingBorder<'_> {
             TrimCurve::Pcurve(pcurve) => pcurve.share(f),
         };
         let p = (run.start(), run.point(MIDDLE), run.end());
-        let off = |off: Off| outside(base, run, off, tolerance);
+        let off = |off: OffSurface| outside(base, run, off, tolerance);
         // From a pole the other end decides on which side of a seam the border runs.
         let pcurve = if is_pole(base, about(from)) {
             Pcurve::follow(base, run, (1.0, 0.0), about(to), tolerance.point).map(|pcurve| pcurve.turned())
@@ -327,7 +327,7 @@ impl DividingBorder<'_> {
 
 /// A piece of a cutter, with the place of its middle.
 fn of_cutter(base: &Surface, curve: usize, run: Chain, start: DVec2, tolerance: &Tolerance) -> Result<Piece> {
-    let off = |off: Off| outside(base, &run, off, tolerance);
+    let off = |off: OffSurface| outside(base, &run, off, tolerance);
     let before = Pcurve::follow(base, &run, (MIDDLE, 0.0), start, tolerance.point).map_err(off)?;
     let after = Pcurve::follow(base, &run, (MIDDLE, 1.0), start, tolerance.point).map_err(off)?;
     let pcurve = before.turned().then(&after).into_poles(base, &run);
@@ -336,7 +336,7 @@ fn of_cutter(base: &Surface, curve: usize, run: Chain, start: DVec2, tolerance: 
     Ok(Piece { curve, border, trim_curve: TrimCurve::Pcurve(Arc::new(pcurve)), uv, p, seam: false, rim: false })
 }
 
-fn outside(base: &Surface, run: &Chain, off: Off, tolerance: &Tolerance) -> Fault {
+fn outside(base: &Surface, run: &Chain, off: OffSurface, tolerance: &Tolerance) -> Fault {
     let (of, at) = (run.origin(), off.at);
     SurfaceFault::LoopOutsideSurface { of, surface: base.origin(), off: off.distance, at, tolerance: tolerance.point }.into()
 }

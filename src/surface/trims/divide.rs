@@ -17,7 +17,7 @@ use crate::surface::data::kind::Domain;
 use crate::surface::faults::CutFault;
 use crate::surface::rails::side::{Border, Side};
 use crate::surface::rails::trim_curve::TrimCurve;
-use crate::surface::trims::cells::{Cells, Face};
+use crate::surface::trims::cells::{Cells, FaceLoops};
 use crate::surface::trims::cutters::{DividingCurve, Meets, Piece, bounded, dividing_curves, pieces, within};
 use crate::surface::trims::faces::{Edge, bridges, followers, is_plane, loops, without_tails};
 use crate::surface::trims::pcurve::is_pole;
@@ -69,7 +69,7 @@ pub fn split(whole: &Surface, cutters: &[Chain], origin: Origin, tolerance: &Tol
     let base = &plane::unmapped(whole, tolerance)?;
     let dividing = dividing(base, cutters, Meets::Anywhere, tolerance)?;
     let cells = Cells::new(base, &dividing.pieces, &dividing.edges, tolerance)?;
-    let part = |face: &Face| Ok(assembled(base, trim_loops(&dividing.pieces, face), origin)?.cut_from(std::slice::from_ref(whole)));
+    let part = |face: &FaceLoops| Ok(assembled(base, trim_loops(&dividing.pieces, face), origin)?.cut_from(std::slice::from_ref(whole)));
     let faces = cells.faces()?;
     undivided(base, &dividing, faces.len(), tolerance)?;
     faces.iter().map(part).collect()
@@ -274,7 +274,7 @@ fn sites(base: &Surface, places: &Places, tolerance: &Tolerance) -> Vec<usize> {
 }
 
 /// The loops of a face, the outer one first.
-pub(crate) fn trim_loops(pieces: &[Piece], face: &Face) -> Vec<TrimLoop> {
+pub(crate) fn trim_loops(pieces: &[Piece], face: &FaceLoops) -> Vec<TrimLoop> {
     let mut trim_loops: Vec<TrimLoop> = face.iter().map(|row| trim_loop(pieces, row)).collect();
     trim_loops.sort_by(|a, b| b.area2().abs().total_cmp(&a.area2().abs()));
     trim_loops

@@ -26,7 +26,7 @@ use crate::surface::trims::trim_loop::TrimLoop;
 const REACH: f64 = 4.0;
 
 /// A loop of a face with its curves in space.
-pub(crate) struct Ring {
+pub(crate) struct LoopRing {
     /// The curve, or the surface, that is named for it.
     pub of: Origin,
     /// Its place in the list of holes; `None` for a loop that the surface had before.
@@ -39,7 +39,7 @@ pub(crate) struct Ring {
     seams: Vec<Chain>,
 }
 
-impl Ring {
+impl LoopRing {
     /// A loop given by curves.
     pub fn of_chains(chains: &[Chain], hole: Option<usize>, otherwise: Origin) -> Self {
         let of = chains.first().map_or(otherwise, Chain::origin);
@@ -71,7 +71,7 @@ pub(crate) type ChainCut = (usize, f64);
 
 /// Where two loops meet.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Touch {
+pub(crate) struct LoopTouch {
     /// Points, those of one place once; ends of common runs too.
     pub places: Vec<DVec3>,
     /// Ends of the first run that both have.
@@ -84,7 +84,7 @@ pub(crate) struct Touch {
     pub cuts: (Vec<ChainCut>, Vec<ChainCut>),
 }
 
-impl Touch {
+impl LoopTouch {
     /// Whether it is more than a contact in one point.
     pub fn is_crossing(&self) -> bool {
         self.run.is_some() || self.places.len() > 1
@@ -109,8 +109,8 @@ struct Fence<'a> {
 }
 
 /// Meetings of loops, by the numbers of two of them in ascending order; loops before `new` are not compared with each other.
-pub(crate) fn touches(rings: &[Ring], new: usize, tolerance: &Tolerance) -> Result<BTreeMap<(usize, usize), Touch>> {
-    let of_ring = |(ring, r): (usize, &'_ Ring)| r.chains.iter().enumerate().map(move |(number, _)| (ring, number)).collect::<Vec<_>>();
+pub(crate) fn touches(rings: &[LoopRing], new: usize, tolerance: &Tolerance) -> Result<BTreeMap<(usize, usize), LoopTouch>> {
+    let of_ring = |(ring, r): (usize, &'_ LoopRing)| r.chains.iter().enumerate().map(move |(number, _)| (ring, number)).collect::<Vec<_>>();
     let mut fences: Vec<Fence> = rings
         .iter()
         .enumerate()
@@ -121,7 +121,7 @@ pub(crate) fn touches(rings: &[Ring], new: usize, tolerance: &Tolerance) -> Resu
         })
         .collect();
     fences.sort_by(|a, b| a.reach.min.x.total_cmp(&b.reach.min.x).then((a.ring, a.number).cmp(&(b.ring, b.number))));
-    let mut found: BTreeMap<(usize, usize), Touch> = BTreeMap::new();
+    let mut found: BTreeMap<(usize, usize), LoopTouch> = BTreeMap::new();
     let mut open: Vec<usize> = Vec::new();
     for k in 0..fences.len() {
         job::poll();
@@ -153,10 +153,10 @@ pub(crate) fn touches(rings: &[Ring], new: usize, tolerance: &Tolerance) -> Resu
 }
 
 /// The fault of two loops that meet in more than a point.
-pub(crate) fn crossing((a, b): (&Ring, &Ring), touch: &Touch, trimming: Origin, tolerance: &Tolerance) -> LoopFault {
+pub(crate) fn crossing((a, b): (&LoopRing, &LoopRing), touch: &LoopTouch, trimming: Origin, tolerance: &Tolerance) -> LoopFault {
     let (old, later) = if b.outer { (b, a) } else { (a, b) };
     let room = REACH * tolerance.point;
-    let whole = |ring: &Ring| touch.shared >= ring.length() - room;
+    let whole = |ring: &LoopRing| touch.shared >= ring.length() - room;
     if let (Some(hole), true, true) = (later.hole, whole(old), whole(later)) {
         let earlier = if old.outer { None } else { old.hole };
         if old.outer || earlier.is_some() {
@@ -230,10 +230,10 @@ pub(crate) fn nested(
     None
 }
 
-impl Ring {
+impl LoopRing {
     /// Whether it crosses a seam of the surface that has this border.
     pub fn crosses_seam(&self, border: &Self, tolerance: &Tolerance) -> Result<bool> {
-        let (mut touch, seams) = (Touch::default(), &border.seams);
+        let (mut touch, seams) = (LoopTouch::default(), &border.seams);
         for seam in seams {
             for chain in &self.chains {
                 for m in meet(seam, chain, tolerance)? {

@@ -16,7 +16,7 @@ use crate::surface::trims::divide::divide;
 use crate::surface::trims::trim_loop::{TrimLoop, natural};
 
 /// How the two sides of a loop are found.
-struct Sides {
+struct SideSearch {
     /// Where along a curve its two sides are looked at: no place that is special for anything.
     at_fraction: f64,
     /// How far beside it, as a share of its length, at first.
@@ -29,7 +29,8 @@ struct Sides {
     cells_each_way: usize,
 }
 
-const SIDES: Sides = Sides { at_fraction: 0.4873, first_distance_share: 0.01, max_halvings: 12, inward_nudges: 100.0, cells_each_way: 48 };
+const SIDES: SideSearch =
+    SideSearch { at_fraction: 0.4873, first_distance_share: 0.01, max_halvings: 12, inward_nudges: 100.0, cells_each_way: 48 };
 
 /// Which part a loop keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

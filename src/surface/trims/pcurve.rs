@@ -30,7 +30,7 @@ const FOLLOW: Following = Following { least_steps: 8, largest_turn_share: 0.2, m
 
 /// Where a curve is too far from the surface.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Off {
+pub(crate) struct OffSurface {
     /// The point of the curve.
     pub at: DVec3,
     /// How far it is, model units.
@@ -42,7 +42,7 @@ impl Pcurve {
     /// than `near`.
     ///
     /// From a pole, where u (or v) says nothing, the way is found from the other end.
-    pub fn follow(surface: &Surface, chain: &Chain, (from, to): (f64, f64), start: DVec2, near: f64) -> Result<Self, Off> {
+    pub fn follow(surface: &Surface, chain: &Chain, (from, to): (f64, f64), start: DVec2, near: f64) -> Result<Self, OffSurface> {
         if is_pole(surface, start) {
             let end = closest(surface, chain.point(to)).uv.into();
             if !is_pole(surface, end) {
@@ -52,7 +52,7 @@ impl Pcurve {
         Self::along(surface, chain, (from, to), start, near)
     }
 
-    fn along(surface: &Surface, chain: &Chain, (from, to): (f64, f64), start: DVec2, near: f64) -> Result<Self, Off> {
+    fn along(surface: &Surface, chain: &Chain, (from, to): (f64, f64), start: DVec2, near: f64) -> Result<Self, OffSurface> {
         let stops = chain_breaks(chain);
         let (low, high) = (from.min(to), from.max(to));
         let mut cuts: Vec<f64> = stops.into_iter().filter(|f| *f > low && *f < high).collect();
@@ -62,11 +62,11 @@ impl Pcurve {
             cuts.reverse();
         }
         let widest = Cell::new(0.0_f64);
-        let land = |f: f64, guess: DVec2| -> Result<DVec2, Off> {
+        let land = |f: f64, guess: DVec2| -> Result<DVec2, OffSurface> {
             let p = chain.point(f);
             let (uv, distance) = foot(surface.evaluator(), p, guess);
             if distance > near {
-                return Err(Off { at: p, distance });
+                return Err(OffSurface { at: p, distance });
             }
             widest.set(widest.get().max(distance));
             Ok(uv)
@@ -130,9 +130,9 @@ fn walk(
     chain: &Chain,
     at: &mut Vec<(f64, DVec2)>,
     to: f64,
-    land: &impl Fn(f64, DVec2) -> Result<DVec2, Off>,
+    land: &impl Fn(f64, DVec2) -> Result<DVec2, OffSurface>,
     left: u32,
-) -> Result<(), Off> {
+) -> Result<(), OffSurface> {
     let (from, here) = at[at.len() - 1];
     // First order: the tangent's foot in (u, v).
     let jet = surface.jet(here.x, here.y);

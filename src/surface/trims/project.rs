@@ -63,7 +63,7 @@ pub enum Way {
 
 /// A place on the surface with the projected curve's point and derivative.
 #[derive(Clone, Copy)]
-pub(crate) struct Spot {
+pub(crate) struct Landing {
     /// Where on the surface.
     pub uv: DVec2,
     /// The point.
@@ -79,7 +79,7 @@ pub(crate) struct Spot {
 pub(crate) fn cubics(
     stops: &[f64],
     allowed: f64,
-    land: impl Fn(f64, Option<DVec2>, bool) -> Result<Spot>,
+    land: impl Fn(f64, Option<DVec2>, bool) -> Result<Landing>,
     lost: impl Fn(DVec3) -> Fault,
 ) -> Result<Vec<Nurbs>> {
     let mut pieces: Vec<Nurbs> = Vec::new();
@@ -116,7 +116,7 @@ pub(crate) fn cubics(
     Ok(pieces)
 }
 
-struct Carrier<'a> {
+struct Projector<'a> {
     surface: &'a Surface,
     near: Nearest,
     chain: &'a Chain,
@@ -128,7 +128,7 @@ struct Carrier<'a> {
 /// Fails with E613 where the curve leaves the surface (its parameters, or the direction misses it), E413 where the result
 /// has a cusp.
 pub fn project(surface: &Surface, chain: &Chain, way: Way, origin: Origin, tolerance: &Tolerance) -> Result<Curve> {
-    let carrier = Carrier { surface, near: Nearest::new(surface), chain, way };
+    let carrier = Projector { surface, near: Nearest::new(surface), chain, way };
     let off = |at: DVec3, distance: f64| SurfaceFault::LoopOutsideSurface {
         of: chain.origin(),
         surface: surface.origin(),
@@ -169,19 +169,19 @@ fn walked(stops: &[f64]) -> Vec<f64> {
     stops.windows(2).flat_map(between).chain(stops.last().copied()).collect()
 }
 
-impl Carrier<'_> {
+impl Projector<'_> {
     /// The projected point at a fraction of the chain, near a place when one is known; `before`: derivatives of the piece
     /// that ends there. `None` where there is none. Over a seam (u, v) go on, so that what is between two places is near both.
-    fn at(&self, f: f64, near: Option<DVec2>, before: bool) -> Option<Spot> {
+    fn at(&self, f: f64, near: Option<DVec2>, before: bool) -> Option<Landing> {
         let found = self.landed(f, near, before)?;
         let Some(near) = near else { return Some(found) };
         let turns = |closed: bool, there: f64, here: f64| if closed { (there - here).round() } else { 0.0 };
         let closed = self.surface.closed();
         let uv = found.uv + DVec2::new(turns(closed.0, near.x, found.uv.x), turns(closed.1, near.y, found.uv.y));
-        Some(Spot { uv, ..found })
+        Some(Landing { uv, ..found })
     }
 
-    fn landed(&self, f: f64, near: Option<DVec2>, before: bool) -> Option<Spot> {
+    fn landed(&self, f: f64, near: Option<DVec2>, before: bool) -> Option<Landing> {
         let jet = if before { self.chain.jet_before(f) } else { self.chain.jet(f) };
         match self.way {
             Way::Parameters => {
@@ -193,7 +193,7 @@ impl Carrier<'_> {
                     return None;
                 }
                 let s = self.surface.jet(uv.x, uv.y);
-                Some(Spot { uv, p: s.p, d1: s.du * jet.d1.x + s.dv * jet.d1.y })
+                Some(Landing { uv, p: s.p, d1: s.du * jet.d1.x + s.dv * jet.d1.y })
             }
             Way::Nearest => {
                 let uv = self.foot(jet.p, near);
@@ -203,13 +203,13 @@ impl Carrier<'_> {
                 let (x, y) = (s.du.dot(jet.d1), s.dv.dot(jet.d1));
                 let det = a * c - b * b;
                 let d1 = s.du * ((c * x - b * y) / det) + s.dv * ((a * y - b * x) / det);
-                d1.is_finite().then_some(Spot { uv, p: s.p, d1 })
+                d1.is_finite().then_some(Landing { uv, p: s.p, d1 })
             }
             Way::Along(way) => {
                 let (uv, s) = self.hit(jet.p, way, near)?;
                 let solved = DMat3::from_cols(s.du, s.dv, -way).inverse() * jet.d1;
                 let d1 = s.du * solved.x + s.dv * solved.y;
-                d1.is_finite().then_some(Spot { uv, p: s.p, d1 })
+                d1.is_finite().then_some(Landing { uv, p: s.p, d1 })
             }
         }
     }

@@ -14,7 +14,7 @@ use crate::surface::data::kind::Domain;
 use crate::surface::faults::{LoopFault, LoopRole, SurfaceFault};
 use crate::surface::rails::boundary;
 use crate::surface::rails::trim_curve::TrimCurve;
-use crate::surface::trims::loops::{Ring, crossing, nested, touches};
+use crate::surface::trims::loops::{LoopRing, crossing, nested, touches};
 use crate::surface::trims::noncontractible::{Keep, noncontractible};
 use crate::surface::trims::trim_loop::{TrimLoop, around, assembled, natural, shifts};
 
@@ -38,7 +38,7 @@ pub fn trim(base: &Surface, outer: &[Chain], holes: &[Vec<Chain>], origin: Origi
         if trim_loop.winds(&base) {
             base = noncontractible(&base, outer, Keep::Inside, origin, tolerance)?.ok_or_else(|| goes_round(&base, outer, origin))?;
         } else {
-            let ring = Ring::of_chains(outer, None, origin);
+            let ring = LoopRing::of_chains(outer, None, origin);
             let kept = if unbounded { Vec::new() } else { kept_holes(&base, &ring, &trim_loop, origin, tolerance)? };
             (trim_loops, rings) = (vec![trim_loop], vec![ring]);
             for (ring, trim_loop) in kept {
@@ -50,7 +50,8 @@ pub fn trim(base: &Surface, outer: &[Chain], holes: &[Vec<Chain>], origin: Origi
     if trim_loops.is_empty() {
         trim_loops = natural(&base, tolerance)?;
         if !holes.is_empty() {
-            rings = trim_loops.iter().enumerate().map(|(k, w)| Ring::of_trim_loop(&base, w, k == 0, tolerance)).collect::<Result<_>>()?;
+            rings =
+                trim_loops.iter().enumerate().map(|(k, w)| LoopRing::of_trim_loop(&base, w, k == 0, tolerance)).collect::<Result<_>>()?;
         }
     }
     if holes.is_empty() {
@@ -82,13 +83,13 @@ struct Holes<'a> {
 
 impl Holes<'_> {
     /// The face with these loops, the outer one first, without what the holes bound.
-    fn cut(&self, mut trim_loops: Vec<TrimLoop>, mut rings: Vec<Ring>, holes: &[Vec<Chain>]) -> Result<Surface> {
+    fn cut(&self, mut trim_loops: Vec<TrimLoop>, mut rings: Vec<LoopRing>, holes: &[Vec<Chain>]) -> Result<Surface> {
         let (base, origin, tolerance) = (self.base, self.origin, self.tolerance);
         let new = rings.len();
         let mut cutting = Vec::with_capacity(holes.len());
         for (k, chains) in holes.iter().enumerate() {
             cutting.push(around(base, chains, LoopRole::Hole(k), tolerance).map_err(|fault| together(fault, holes, tolerance))?);
-            rings.push(Ring::of_chains(chains, Some(k), origin));
+            rings.push(LoopRing::of_chains(chains, Some(k), origin));
         }
         let touches = touches(&rings, new, tolerance)?;
         if let Some(((a, b), touch)) = touches.iter().find(|(_, touch)| touch.is_crossing()) {
@@ -145,7 +146,14 @@ impl Holes<'_> {
     }
 
     /// How far a loop on a closed surface must be moved in (u, v) to lie inside the outer one, if it does without crossing a seam.
-    fn moved_inside(&self, outer: &TrimLoop, border: &Ring, ring: &Ring, trim_loop: &TrimLoop, place: DVec2) -> Result<Option<DVec2>> {
+    fn moved_inside(
+        &self,
+        outer: &TrimLoop,
+        border: &LoopRing,
+        ring: &LoopRing,
+        trim_loop: &TrimLoop,
+        place: DVec2,
+    ) -> Result<Option<DVec2>> {
         if ring.crosses_seam(border, self.tolerance)? {
             return Ok(None);
         }
@@ -159,7 +167,7 @@ impl Holes<'_> {
 }
 
 /// A point of a loop, far from one at which it touches another.
-fn place_of(ring: &Ring, touched: Option<DVec3>) -> DVec3 {
+fn place_of(ring: &LoopRing, touched: Option<DVec3>) -> DVec3 {
     let ends = ring.chains.iter().flat_map(|c| [c.start(), c.point(0.5)]);
     let far = |p: &DVec3| touched.map_or(0.0, |t| t.distance_squared(*p));
     ends.max_by(|a, b| far(a).total_cmp(&far(b))).unwrap_or(DVec3::ZERO)
@@ -177,14 +185,20 @@ fn together(fault: Fault, holes: &[Vec<Chain>], tolerance: &Tolerance) -> Fault 
 }
 
 /// Where an outer loop lies on a surface that has loops already: E613 where it leaves it, else the holes that lie inside it.
-fn kept_holes(base: &Surface, ring: &Ring, trim_loop: &TrimLoop, origin: Origin, tolerance: &Tolerance) -> Result<Vec<(Ring, TrimLoop)>> {
+fn kept_holes(
+    base: &Surface,
+    ring: &LoopRing,
+    trim_loop: &TrimLoop,
+    origin: Origin,
+    tolerance: &Tolerance,
+) -> Result<Vec<(LoopRing, TrimLoop)>> {
     if base.parts().trim.is_none() && base.domain() != Domain::Loop {
         return Ok(Vec::new());
     }
     let own = natural(base, tolerance)?;
-    let mut rings = vec![Ring::of_chains(&ring.chains, None, origin)];
+    let mut rings = vec![LoopRing::of_chains(&ring.chains, None, origin)];
     for (k, trim_loop) in own.iter().enumerate() {
-        rings.push(Ring::of_trim_loop(base, trim_loop, k == 0, tolerance)?);
+        rings.push(LoopRing::of_trim_loop(base, trim_loop, k == 0, tolerance)?);
     }
     // The outer loop is the new one: it comes last.
     rings.rotate_left(1);
@@ -211,7 +225,7 @@ fn kept_holes(base: &Surface, ring: &Ring, trim_loop: &TrimLoop, origin: Origin,
                 return Err(crossing((&rings[k], ring), touch, origin, tolerance).into());
             }
         } else if let Some(by) = trim_loop.holds_moved(base, hole.place_off(base, touch.and_then(|t| t.places.first().copied())).0) {
-            kept.push((Ring::of_trim_loop(base, &hole, false, tolerance)?, hole.shifted(-by)));
+            kept.push((LoopRing::of_trim_loop(base, &hole, false, tolerance)?, hole.shifted(-by)));
         }
     }
     Ok(kept)

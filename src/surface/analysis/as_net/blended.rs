@@ -20,7 +20,7 @@ use crate::surface::rails::line::Line;
 use crate::surface::rails::rail::Rail;
 use crate::surface::shapes::blend::Blend;
 use crate::surface::shapes::nurbs::NurbsSurface;
-use crate::surface::shapes::weights::{Axis, Rule};
+use crate::surface::shapes::weights::{BlendAxis, Rule};
 
 /// Parts of a cell over which blending functions are bounded.
 const PARTS: usize = 16;
@@ -97,7 +97,7 @@ fn made(blend: &Blend, within: f64) -> Result<NetForm, (f64, f64)> {
 }
 
 /// Curves along u alone, blended across; straight from one to the next where the rule is.
-fn skinned(along_u: &Fitted, v: &Axis) -> NurbsSurface {
+fn skinned(along_u: &Fitted, v: &BlendAxis) -> NurbsSurface {
     let g = poles(along_u);
     let width = g[0].len();
     let (degree, knots, shares) = if v.rule == Rule::Linear {
@@ -120,12 +120,12 @@ fn poles(fitted: &Fitted) -> Vec<Vec<DVec3>> {
 }
 
 /// Whether the blending functions of a direction are piecewise cubic.
-fn is_cubic(axis: &Axis) -> bool {
+fn is_cubic(axis: &BlendAxis) -> bool {
     axis.is_piecewise() || axis.nodes.len() <= DEGREES[0] + 1
 }
 
 /// Lines at which the blending functions of a direction change, with how many derivatives go on.
-fn lines(axis: &Axis, degree: usize) -> Breaks {
+fn lines(axis: &BlendAxis, degree: usize) -> Breaks {
     let mut breaks = Breaks::none(degree);
     let smooth = match axis.rule {
         Rule::Spline | Rule::Periodic => 2,
@@ -138,7 +138,7 @@ fn lines(axis: &Axis, degree: usize) -> Breaks {
 }
 
 /// Bound of the largest sum of the sizes of all blending functions: of their Bézier points over parts of cells.
-fn reach(axis: &Axis) -> f64 {
+fn reach(axis: &BlendAxis) -> f64 {
     if axis.slopes().is_empty() {
         return axis.lebesgue();
     }
@@ -159,7 +159,7 @@ fn reach(axis: &Axis) -> f64 {
 }
 
 /// Control values of the blending function of each node over breaks that hold the lines of the axis.
-fn cardinals(axis: &Axis, breaks: &Breaks) -> Vec<Vec<f64>> {
+fn cardinals(axis: &BlendAxis, breaks: &Breaks) -> Vec<Vec<f64>> {
     let n = axis.nodes.len();
     let mut all = vec![Hermite { value: Vec::new(), slope: Vec::new(), bend: Vec::new() }; n];
     for x in &breaks.at {
@@ -174,7 +174,7 @@ fn cardinals(axis: &Axis, breaks: &Breaks) -> Vec<Vec<f64>> {
 }
 
 /// Value and derivatives of every node's blending function, slopes across the nodes counted to the nodes that they are sums of.
-fn whole(axis: &Axis, x: f64, side: OneSided) -> Vec<[f64; 3]> {
+fn whole(axis: &BlendAxis, x: f64, side: OneSided) -> Vec<[f64; 3]> {
     let mut sums = vec![[0.0; 3]; axis.nodes.len()];
     for (term, w) in axis.weights(x, side).iter() {
         match term.checked_sub(sums.len()) {

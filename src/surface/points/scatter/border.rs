@@ -23,7 +23,7 @@ use crate::surface::trims::trim_loop::{TrimLoop, assembled};
 
 /// A side of the border: its two points, and the piece that lies along it.
 #[derive(Clone, Copy, Debug)]
-pub struct Side {
+pub struct TriangleSide {
     /// Its first point, counter-clockwise.
     pub from: usize,
     /// Its last point.
@@ -38,7 +38,7 @@ const THIN: f64 = 0.05;
 
 /// The triangles without thin ones along the border, and those no higher than `least` (points that are in a row but for rounding), and
 /// the sides of the border counter-clockwise, beginning with the first point.
-pub fn peeled(triangles: Vec<[usize; 3]>, flat: &[DVec2], least: f64) -> (Vec<[usize; 3]>, Vec<Side>) {
+pub fn peeled(triangles: Vec<[usize; 3]>, flat: &[DVec2], least: f64) -> (Vec<[usize; 3]>, Vec<TriangleSide>) {
     let left = without_thin(triangles, flat, least);
     let mut next: BTreeMap<usize, (usize, usize)> = BTreeMap::new();
     for ((from, to), t) in outer(&left) {
@@ -49,7 +49,7 @@ pub fn peeled(triangles: Vec<[usize; 3]>, flat: &[DVec2], least: f64) -> (Vec<[u
     let Some(&first) = next.keys().next() else { return (left, sides) };
     let mut from = first;
     while let Some((to, piece)) = next.remove(&from) {
-        sides.push(Side { from, to, piece });
+        sides.push(TriangleSide { from, to, piece });
         from = to;
     }
     (left, sides)
@@ -104,7 +104,7 @@ pub fn opposite(triangles: &[[usize; 3]]) -> Vec<[Option<usize>; 3]> {
 }
 
 /// The sides in runs along one line each, beginning at a corner.
-pub fn runs(sides: &[Side], flat: &[DVec2], tolerance: &Tolerance) -> Vec<Vec<Side>> {
+pub fn runs(sides: &[TriangleSide], flat: &[DVec2], tolerance: &Tolerance) -> Vec<Vec<TriangleSide>> {
     let n = sides.len();
     let corner = |k: usize| {
         let (before, after) = (&sides[(k + n - 1) % n], &sides[k]);
@@ -113,7 +113,7 @@ pub fn runs(sides: &[Side], flat: &[DVec2], tolerance: &Tolerance) -> Vec<Vec<Si
         off > tolerance.point
     };
     let start = (0..n).find(|k| corner(*k)).unwrap_or(0);
-    let mut found: Vec<Vec<Side>> = Vec::new();
+    let mut found: Vec<Vec<TriangleSide>> = Vec::new();
     for k in (0..n).map(|k| (start + k) % n) {
         match found.last_mut() {
             Some(run) if !corner(k) => run.push(sides[k]),
@@ -124,9 +124,9 @@ pub fn runs(sides: &[Side], flat: &[DVec2], tolerance: &Tolerance) -> Vec<Vec<Si
 }
 
 /// The surface of a field inside its border. Where that is the whole square it has four sides and no loop.
-pub fn surface(field: Field, runs: &[Vec<Side>], points: usize, origin: Origin, tolerance: &Tolerance) -> Result<Surface> {
+pub fn surface(field: Field, runs: &[Vec<TriangleSide>], points: usize, origin: Origin, tolerance: &Tolerance) -> Result<Surface> {
     let curves: Vec<Curve> = runs.iter().map(|run| curve(&field, run, origin)).collect();
-    let corner = |run: &Vec<Side>| field.pieces()[run[0].piece].corners[0];
+    let corner = |run: &Vec<TriangleSide>| field.pieces()[run[0].piece].corners[0];
     let corners: Vec<DVec2> = runs.iter().map(corner).collect();
     let square = corners.len() == 4 && corners.iter().all(|c| c.distance(c.round()) <= NUDGE * NUDGE);
     let triangles = field.pieces().len() / 3;
@@ -163,9 +163,9 @@ pub fn surface(field: Field, runs: &[Vec<Side>], points: usize, origin: Origin, 
 }
 
 /// The curve of the surface over a run of sides: the cubics of the pieces along it.
-fn curve(field: &Field, run: &[Side], origin: Origin) -> Curve {
+fn curve(field: &Field, run: &[TriangleSide], origin: Origin) -> Curve {
     let mut t = 0.0;
-    let cubic = |side: &Side| {
+    let cubic = |side: &TriangleSide| {
         let piece = &field.pieces()[side.piece];
         let (a, b) = (piece.corners[0], piece.corners[1]);
         let poles: Vec<DVec3> = (0..4).zip(piece.side_heights()).map(|(k, h)| field.lifted(a.lerp(b, f64::from(k) / 3.0), h)).collect();
