@@ -79,7 +79,7 @@ pub(crate) fn contacts(curve: &Curve, sheet: &mut Sheet, point: f64, long: f64) 
     let mut search = CurveSearch { curve, sheet, point, long, found, near, looked_at: 0, exhausted: None };
     let count = curve.pieces().pieces.len();
     for root in search.sheet.roots.clone() {
-        search.walk((0, 0, count), root);
+        search.descend((0, 0, count), root);
     }
     if let Some(at) = search.exhausted {
         return Err(at);
@@ -89,7 +89,7 @@ pub(crate) fn contacts(curve: &Curve, sheet: &mut Sheet, point: f64, long: f64) 
 
 impl CurveSearch<'_> {
     /// Pieces of the curve below a node of its tree against a cell.
-    fn walk(&mut self, x: (usize, usize, usize), cell: usize) {
+    fn descend(&mut self, x: (usize, usize, usize), cell: usize) {
         let pieces = self.curve.pieces();
         if !pieces.bounds(x.0).touches(&self.sheet.cell(cell).bounds, self.point) {
             return;
@@ -101,8 +101,8 @@ impl CurveSearch<'_> {
             return;
         }
         let (left, right, middle) = children(x.0, x.1, x.2);
-        self.walk((left, x.1, middle), cell);
-        self.walk((right, middle, x.2), cell);
+        self.descend((left, x.1, middle), cell);
+        self.descend((right, middle, x.2), cell);
     }
 
     fn pair(&mut self, part: &CurvePart, node: &Node, k: usize) {

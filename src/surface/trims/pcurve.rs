@@ -75,7 +75,7 @@ impl Pcurve {
         for w in cuts.windows(2) {
             for k in 1..=FOLLOW.least_steps {
                 let f = if k == FOLLOW.least_steps { w[1] } else { w[0] + (w[1] - w[0]) * k as f64 / FOLLOW.least_steps as f64 };
-                walk(surface, chain, &mut at, f, &land, FOLLOW.max_halvings)?;
+                follow_to(surface, chain, &mut at, f, &land, FOLLOW.max_halvings)?;
             }
         }
         Ok(Self::new(at, widest.get()))
@@ -125,7 +125,7 @@ fn on_pole_side(surface: &Surface, uv: DVec2) -> bool {
 }
 
 /// Goes on to a fraction, in smaller steps where the way bends or the foot leaps.
-fn walk(
+fn follow_to(
     surface: &Surface,
     chain: &Chain,
     at: &mut Vec<(f64, DVec2)>,
@@ -161,6 +161,6 @@ fn walk(
         return Ok(());
     }
     let middle = 0.5 * (from + to);
-    walk(surface, chain, at, middle, land, left - 1)?;
-    walk(surface, chain, at, to, land, left - 1)
+    follow_to(surface, chain, at, middle, land, left - 1)?;
+    follow_to(surface, chain, at, to, land, left - 1)
 }

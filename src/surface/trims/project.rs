@@ -148,7 +148,7 @@ pub fn project(surface: &Surface, chain: &Chain, way: Way, origin: Origin, toler
     }
     let fitted = |stops: &[f64]| cubics(stops, PROJECT.cubic_share * tolerance.point, land, lost);
     // Long steps may land on another sheet of the surface, short ones follow their own.
-    let pieces = fitted(&stops).or_else(|_| fitted(&walked(&stops)))?;
+    let pieces = fitted(&stops).or_else(|_| fitted(&sampled(&stops)))?;
     let curve = Curve::new(Shape::Nurbs(Arc::new(Nurbs::joined(&pieces))), Kind::Project, origin);
     long_enough(curve, tolerance)
 }
@@ -162,7 +162,7 @@ fn long_enough(curve: Curve, tolerance: &Tolerance) -> Result<Curve> {
 }
 
 /// Stops with as many between each two.
-fn walked(stops: &[f64]) -> Vec<f64> {
+fn sampled(stops: &[f64]) -> Vec<f64> {
     let between = |w: &[f64]| -> Vec<f64> {
         (0..PROJECT.steps_between_stops).map(|k| w[0] + (w[1] - w[0]) * k as f64 / PROJECT.steps_between_stops as f64).collect()
     };
