@@ -5,7 +5,6 @@ use glam::{DVec2, DVec3};
 use crate::base::job;
 use crate::base::tolerance::EPSILON;
 use crate::surface::core::evaluator::Evaluator;
-use crate::surface::core::power_form::PowerForm;
 use crate::surface::core::surface::Surface;
 use crate::surface::data::jet::Jet2;
 use crate::surface::data::kind::Domain;
@@ -158,11 +157,6 @@ impl Surface {
     /// Beyond 0…1 where the surface closes and the border crosses its seam.
     pub fn border_place(&self, k: usize, fraction: f64) -> Option<(f64, f64)> {
         self.evaluator().border_place(k, fraction)
-    }
-
-    /// The same with its power form, where it has one.
-    pub fn border_place_by(&self, power_form: Option<&PowerForm>, k: usize, fraction: f64) -> Option<(f64, f64)> {
-        Evaluator::new(self, power_form).border_place(k, fraction)
     }
 }
 
