@@ -22,7 +22,7 @@ use lofting::surface::points::control_net::{Net, bezier, nurbs};
 use lofting::surface::swept::extrude;
 use lofting::surface::swept::revolve::{self, Axis};
 use lofting::surface::{
-    Domain, Evaluator, Map, OneSided, Rail, Reparam, Surface, SurfaceKind, Way, bbox, carried, closest, divide, ruled, trim,
+    Domain, Evaluator, Map, OneSided, Rail, Reparam, Surface, SurfaceKind, Way, bbox, closest, divide, project, ruled, trim,
 };
 use serde_json::Value;
 
@@ -318,7 +318,7 @@ fn boxes_of_trimmed_surfaces_hold_them_and_touch_them() {
                 if surface.domain() == Domain::Triangle { p(0.3, 0.3, 0.0) } else { p(0.25 + 0.5 * share(3), 0.25 + 0.5 * share(4), 0.0) };
             let place = |angle: f64| (center.x + a * angle.cos(), center.y + b * angle.sin());
             let oval = Chain::of_curve(&ellipse(center, DVec3::X * a, DVec3::Y * b, 0.0, std::f64::consts::TAU, Origin::NONE).unwrap());
-            let Ok(curve) = carried(&surface, &oval, Way::Parameters, Origin::NONE, &t) else { continue };
+            let Ok(curve) = project(&surface, &oval, Way::Parameters, Origin::NONE, &t) else { continue };
             let curve = Chain::of_curve(&curve);
             for hole in [false, true] {
                 let (outer, holes) = if hole { (vec![], vec![vec![curve.clone()]]) } else { (vec![curve.clone()], vec![]) };

@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::DVec3;
 use lofting::base::origin::Origin;
 use lofting::geometry::construct::build;
-use lofting::geometry::construct::fit::Fit;
+use lofting::geometry::construct::fit_curve::Fit;
 use lofting::geometry::{Curve, Ends, Kind, Spline};
 use serde_json::Value;
 
@@ -115,7 +115,7 @@ fn spline_with_given_tangents() {
     }
     close(curve.length(), number(&fit["arc_length"]), 1e-12, "length");
     let how = Fit { start: Some(tangents[0]), end: Some(tangents[1]), ..Fit::default() };
-    let met = lofting::geometry::construct::fit::fit(&points(&fit["data"]), &how, Origin::NONE).unwrap();
+    let met = lofting::geometry::construct::fit_curve::fit(&points(&fit["data"]), &how, Origin::NONE).unwrap();
     let nurbs = met.to_nurbs(&lofting::base::tolerance::Tolerance::new(1e-6, 10.0)).unwrap();
     for (i, expected) in poles.iter().enumerate() {
         assert!(nurbs.pole(i).distance(*expected) < 1e-12, "pole {i} of a fit");
@@ -720,15 +720,15 @@ fn fits_are_near_their_points_with_few_spans() {
         let backwards: Vec<DVec3> = points.iter().rev().copied().collect();
         for tolerance in [0.1, 0.01] {
             let how = Fit { tolerance: Some(tolerance), ..Fit::default() };
-            let curve = lofting::geometry::construct::fit::fit(&points, &how, Origin::NONE).unwrap();
+            let curve = lofting::geometry::construct::fit_curve::fit(&points, &how, Origin::NONE).unwrap();
             assert!(far(&curve, &points) <= tolerance * (1.0 + 1e-9), "{bends} {tolerance}: {}", far(&curve, &points));
             assert!(curve.start().distance(points[0]) < 1e-12 && curve.end().distance(points[120]) < 1e-12);
             assert!(spans(&curve) <= most, "{bends} bends, {tolerance}: {} spans", spans(&curve));
-            let other = lofting::geometry::construct::fit::fit(&backwards, &how, Origin::NONE).unwrap();
+            let other = lofting::geometry::construct::fit_curve::fit(&backwards, &how, Origin::NONE).unwrap();
             assert!(far(&other, &points) <= tolerance * (1.0 + 1e-9) && spans(&other) <= most, "{bends} {tolerance}: {}", spans(&other));
             let larger: Vec<DVec3> = points.iter().map(|p| *p * 1024.0).collect();
             let how = Fit { tolerance: Some(tolerance * 1024.0), ..Fit::default() };
-            let large = lofting::geometry::construct::fit::fit(&larger, &how, Origin::NONE).unwrap();
+            let large = lofting::geometry::construct::fit_curve::fit(&larger, &how, Origin::NONE).unwrap();
             assert_eq!(spans(&large), spans(&curve));
         }
     }

@@ -18,7 +18,7 @@ use lofting::surface::core::plane;
 use lofting::surface::faults::CutFault;
 use lofting::surface::intersect::with_surfaces;
 use lofting::surface::swept::revolve::Axis;
-use lofting::surface::{Surface, Way, carried, extrude, revolve, split, trim};
+use lofting::surface::{Surface, Way, extrude, project, revolve, split, trim};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestCaseResult, TestRng, TestRunner};
 
@@ -123,7 +123,7 @@ fn laid(surface: &Surface, cut: &Cut) -> Made<Chain> {
         Cut::Way(_, _, wave) if *wave == 0.0 => line(points[0], points[points.len() - 1], Origin::NONE)?,
         _ => smooth(&points, closed)?,
     };
-    Ok(Chain::of_curve(&carried(surface, &Chain::of_curve(&flat), Way::Parameters, Origin::NONE, &tolerance())?))
+    Ok(Chain::of_curve(&project(surface, &Chain::of_curve(&flat), Way::Parameters, Origin::NONE, &tolerance())?))
 }
 
 fn number() -> impl Strategy<Value = f64> + Clone {

@@ -33,7 +33,7 @@ limits! {
     pub const MEMBERS_MADE: usize = 20_000_000;
     /// Elements of one mesh where `--max-elements` sets no other number.
     pub const MESH_ELEMENTS: u64 = 100_000_000;
-    /// Steps of a mesh along one stretch of border between two corners.
+    /// Steps of a mesh along one part of a border between two corners.
     pub const MESH_STEPS: u32 = 1_000_000;
     /// Work of one mesh or one of its free faces, in evaluations of curves and surfaces, beside that of its elements.
     pub const MESH_WORK: u64 = 10_000_000;

@@ -72,7 +72,7 @@ pub fn kronrod(a: f64, b: f64, mut f: impl FnMut(f64) -> f64) -> Panel {
 /// Integrates `f` over `a…b`, halving where the estimated error exceeds its share of `relative` × |integral so far| + `absolute`.
 ///
 /// Returns the integral and the sum of the error estimates; intervals are halved at most `depth` times.
-pub fn integrate(a: f64, b: f64, (relative, absolute): (f64, f64), depth: u32, mut f: impl FnMut(f64) -> f64) -> (f64, f64) {
+pub fn integrate(a: f64, b: f64, relative: f64, absolute: f64, depth: u32, mut f: impl FnMut(f64) -> f64) -> (f64, f64) {
     let (mut total, mut error) = (0.0, 0.0);
     let mut open = vec![(a, b, depth)];
     while let Some((a, b, left)) = open.pop() {
@@ -192,7 +192,7 @@ mod tests {
 
     #[test]
     fn adaptive_rule_meets_a_kink() {
-        let (value, error) = integrate(-1.0, 2.0, (1e-13, 1e-16), 50, |x| (x - 0.1).abs());
+        let (value, error) = integrate(-1.0, 2.0, 1e-13, 1e-16, 50, |x| (x - 0.1).abs());
         assert!((value - (1.1 * 1.1 + 1.9 * 1.9) / 2.0).abs() < 1e-12 && error < 1e-11);
     }
 

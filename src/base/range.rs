@@ -1,14 +1,14 @@
 //! Interval arithmetic: numbers and vectors known to lie between two ends.
 //!
 //! Every operation holds all results of its operands; rounding is not counted (relative 1e-16 an operation). A width
-//! above [`VAST`] stands for "not bounded" and stays finite, so that nothing ever becomes NaN.
+//! above [`UNBOUNDED_REACH`] stands for "not bounded" and stays finite, so that nothing ever becomes NaN.
 
 use std::ops::{Add, Mul, Neg, Sub};
 
 use glam::{DVec3, Vec3Swizzles as _};
 
 use super::bbox::Box3;
-use super::tolerance::VAST;
+use super::tolerance::UNBOUNDED_REACH;
 
 /// The numbers from `low` to `high`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -57,10 +57,10 @@ impl Interval {
         Self { low: if self.low <= 0.0 && self.high >= 0.0 { 0.0 } else { a.min(b) }, high: a.max(b) }
     }
 
-    /// One over each; vast where zero is inside.
+    /// One over each; unbounded where zero is inside.
     pub fn inverse(self) -> Self {
         if self.low <= 0.0 && self.high >= 0.0 {
-            return Self::around_zero(VAST);
+            return Self::around_zero(UNBOUNDED_REACH);
         }
         Self::between(1.0 / self.low, 1.0 / self.high)
     }
@@ -118,7 +118,7 @@ impl Interval3 {
     }
 
     /// Not bounded.
-    pub const ANY: Self = Self { low: DVec3::splat(-VAST), high: DVec3::splat(VAST) };
+    pub const ANY: Self = Self { low: DVec3::splat(-UNBOUNDED_REACH), high: DVec3::splat(UNBOUNDED_REACH) };
 
     /// All of the vectors; there must be one.
     pub fn of(vectors: impl IntoIterator<Item = DVec3>) -> Self {
@@ -154,7 +154,7 @@ impl Interval3 {
     /// Whether no useful bound is known.
     pub fn is_unbounded(&self) -> bool {
         let reach = self.reach();
-        reach.is_nan() || reach >= VAST.sqrt()
+        reach.is_nan() || reach >= UNBOUNDED_REACH.sqrt()
     }
 
     /// Largest length, at most.

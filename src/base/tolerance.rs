@@ -23,9 +23,9 @@ crate::content!(Tolerance { point, rounding, angle, parameter });
 pub const FLAT: f64 = 1e-6;
 /// Relative accuracy of a stored arc length.
 pub const LENGTH_ACCURACY: f64 = 1e-13;
-/// Absolute error that a stretch of a stored arc length may always have, model length units.
+/// Absolute error that a panel of a stored arc length may always have, model length units.
 pub const LENGTH_FLOOR: f64 = 1e-16;
-/// Error of a stretch of a stored arc length that rounding of the points makes, as a share of their distance from the origin.
+/// Error of a panel of a stored arc length that rounding of the points makes, as a share of their distance from the origin.
 pub const LENGTH_ROUNDING: f64 = 4e-15;
 /// A quotient within this of a whole number is that number (counts of mesh steps).
 pub const WHOLE_NUMBER: f64 = 1e-9;
@@ -39,7 +39,7 @@ pub const FRAME: f64 = 1e-12;
 pub const CUSP: f64 = 1e-10;
 /// Two runs of a loop that meet within the tolerance and are farther apart than this share of it do not cross each other.
 pub const BESIDE: f64 = 1e-3;
-/// A piece of a stretch of a curve that is shorter than this share of the curve is there by rounding: the stretch was to end at a knot
+/// A piece of a part of a curve that is shorter than this share of the curve is there by rounding: the part was to end at a knot
 /// and ends beside it. What is said of it by differences is noise, and what it adds to bounds is nothing.
 pub const SLIVER: f64 = 1e-10;
 /// Least interval, as a share of the domain, over which a direction is taken where derivatives vanish.
@@ -105,8 +105,8 @@ pub const NEAREST_PAIR: f64 = 1e-6;
 /// No point of a surface stands out of its box by more than this share of the diagonal.
 pub const BOX: f64 = 1e-6;
 /// A bound above this says nothing; finite, so that arithmetic on it never becomes NaN.
-pub const VAST: f64 = 1e120;
-/// No place of an edge is nearer to a point by more than this share of the distance than the one that is told.
+pub const UNBOUNDED_REACH: f64 = 1e120;
+/// No place of an edge is nearer to a point by more than this share of the distance than the one that is given.
 pub const NEAREST_PLACE: f64 = 1e-3;
 /// A place outside of a triangle by this share of it, or less, is read from it.
 pub const BESIDE_TRIANGLE: f64 = 1e-9;

@@ -96,7 +96,7 @@ fn square(surface: &Surface, patch: &Patch, fine: f64, show: Show) -> Sheet {
         if cross.length() > crate::base::tolerance::PARALLEL * scale && scale > 0.0 {
             cross.normalize()
         } else {
-            surface.normal_lean(u, v, (lu, lv))
+            surface.normal_one_sided(u, v, (lu, lv))
         }
     };
     let normals: Vec<DVec3> = (0..jets.len()).map(normal).collect();

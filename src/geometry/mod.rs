@@ -12,9 +12,10 @@ pub mod shapes;
 
 pub use crate::geometry::construct::build::{Ends, Spline};
 pub(crate) use crate::geometry::construct::offset_build::height_over;
-pub use crate::geometry::curves::curve::{Curve, Kind};
+pub use crate::geometry::curves::curve::Curve;
 pub use crate::geometry::curves::enclosure::{Enclosure, enclosure};
 pub use crate::geometry::data::jet::Jet;
+pub use crate::geometry::data::kind::Kind;
 pub use crate::geometry::data::motion::Motion;
 pub use crate::geometry::query::closest::{Closest, closest, closest_pair};
 pub use crate::geometry::query::intersect::{Hit, intersect, self_intersect};

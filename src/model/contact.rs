@@ -90,7 +90,7 @@ impl SegmentSide<'_> {
     /// The face's unit normal at (u, v) on its border, from inside.
     fn normal(&self, (u, v): (f64, f64)) -> DVec3 {
         let lean = |x: f64, (low, high): (f64, f64)| if x - low > high - x { OneSided::Before } else { OneSided::After };
-        self.surface.normal_lean(u, v, (lean(u, self.patch.u), lean(v, self.patch.v)))
+        self.surface.normal_one_sided(u, v, (lean(u, self.patch.u), lean(v, self.patch.v)))
     }
 
     /// Spans of the surface along the segment.

@@ -96,9 +96,9 @@ pub fn area_between(surface: &Surface, part: Rectangle) -> f64 {
 pub fn curve_centroid(chain: &Chain) -> DVec3 {
     const DEPTH: u32 = 24;
     let stops = [vec![0.0], chain_breaks(chain), vec![1.0]].concat();
-    let (about, allowed) = (chain.point(0.5), (0.0, MEASURE_ACCURACY * chain.length()));
+    let (about, allowed) = (chain.point(0.5), MEASURE_ACCURACY * chain.length());
     let along =
-        |k: usize| -> f64 { stops.windows(2).map(|w| integrate(w[0], w[1], allowed, DEPTH, |f| (chain.point(f) - about)[k]).0).sum() };
+        |k: usize| -> f64 { stops.windows(2).map(|w| integrate(w[0], w[1], 0.0, allowed, DEPTH, |f| (chain.point(f) - about)[k]).0).sum() };
     about + DVec3::new(along(0), along(1), along(2))
 }
 

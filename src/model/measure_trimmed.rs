@@ -8,8 +8,7 @@ use crate::base::quadrature::gauss_legendre;
 use crate::base::tolerance::EPSILON;
 use crate::base::work;
 use crate::network::Chain;
-use crate::surface::core::power_form::PowerForm;
-use crate::surface::{Jet2, Side, Surface, chain_breaks};
+use crate::surface::{Evaluator, Jet2, Side, Surface, chain_breaks};
 
 /// Points of the rules along a border, the first pair for runs between breaks only, and across the surface.
 const ALONG: [[usize; 2]; 2] = [[4, 6], [8, 12]];
@@ -76,11 +75,12 @@ pub fn trimmed_integral<const N: usize>(
     let (rules, across) = (ALONG.map(|pair| pair.map(gauss_legendre)), gauss_legendre(ACROSS));
     let (breaks_u, breaks_v) = surface.breaks();
     let closed_v = surface.closed().1;
-    let quick = surface.power_form();
+    let prepared = surface.prepared();
+    let evaluator = prepared.evaluator();
     let dear = if surface.is_scattered() { DEAR } else { 0 };
     let jet = |u, v| {
         work::spend(dear);
-        surface.jet_by(quick.as_ref(), u, v)
+        evaluator.jet(u, v)
     };
     let part = |low: f64, high: f64, v: f64| -> Sums<N> {
         let mut sum = [0.0; N];
@@ -126,7 +126,7 @@ pub fn trimmed_integral<const N: usize>(
             let half = 0.5 * (run.t.1 - run.t.0);
             let t = 0.5 * (run.t.0 + run.t.1) + half * x;
             let (base, way) = (ways[run.border].0, &ways[run.border].1);
-            let (at, dv) = way.at((surface, quick.as_ref()), &jet, t);
+            let (at, dv) = way.at(evaluator, &jet, t);
             (low, high) = (low.min(at), high.max(at));
             if dv == 0.0 {
                 continue;
@@ -209,12 +209,12 @@ impl Way {
     }
 
     /// (u, v) at a share of the way, and dv by the share.
-    fn at(&self, (surface, quick): (&Surface, Option<&PowerForm>), jet: &impl Fn(f64, f64) -> Jet2, t: f64) -> (DVec2, f64) {
+    fn at(&self, evaluator: Evaluator, jet: &impl Fn(f64, f64) -> Jet2, t: f64) -> (DVec2, f64) {
         match self {
             Self::Line(a, b) => (DVec2::new(a.0 + (b.0 - a.0) * t, a.1 + (b.1 - a.1) * t), b.1 - a.1),
             Self::Chain(side, chain, from, to) => {
                 let f = from + (to - from) * t;
-                let uv = surface.border_place_by(quick, *side, f).unwrap_or_default();
+                let uv = evaluator.border_place(*side, f).unwrap_or_default();
                 let jet = jet(uv.0, uv.1);
                 let d = chain.jet(f).d1 * (to - from);
                 let (e, g, m) = (jet.du.length_squared(), jet.dv.length_squared(), jet.du.dot(jet.dv));

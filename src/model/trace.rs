@@ -9,8 +9,7 @@ use crate::base::job;
 use crate::base::quadrature::{self, RUNNING};
 use crate::base::tolerance::{EPSILON, MEASURE_ACCURACY, NEWTON_STEP, Tolerance};
 use crate::network::{Chain, Network};
-use crate::surface::core::power_form::PowerForm;
-use crate::surface::{OneSided, Surface};
+use crate::surface::{OneSided, PreparedSurface, Surface};
 
 /// Halvings of one stretch before its length is taken as it is; the line is cut at kinks, so this is far from reached.
 const DEPTH: u32 = 24;
@@ -22,8 +21,7 @@ const STEPS: usize = 60;
 /// A straight line in (u, v) on a surface under its arc length.
 #[derive(Clone, Debug)]
 pub struct Trace {
-    surface: Surface,
-    quick: Option<PowerForm>,
+    prepared: PreparedSurface,
     from: (f64, f64),
     to: (f64, f64),
     panels: Vec<Panel>,
@@ -31,7 +29,7 @@ pub struct Trace {
 }
 
 // The others follow from these.
-crate::content!(Trace { surface, from, to } but { quick, panels, length });
+crate::content!(Trace { prepared, from, to } but { panels, length });
 
 /// One stretch whose length is a known polynomial of the place.
 #[derive(Clone, Debug)]
@@ -44,17 +42,18 @@ struct Panel {
 impl Trace {
     /// The line between two (u, v); the surface must be smooth along it but for jumps of higher derivatives.
     pub fn new(surface: &Surface, from: (f64, f64), to: (f64, f64)) -> Self {
-        Self::by((surface, None), from, to)
+        Self::of_prepared(PreparedSurface::plain(surface), from, to)
     }
 
-    /// The same with the surface made ready, where it is.
-    pub fn by((surface, quick): (&Surface, Option<PowerForm>), from: (f64, f64), to: (f64, f64)) -> Self {
-        let mut trace = Self { surface: surface.clone(), quick, from, to, panels: Vec::new(), length: 0.0 };
-        let (start, end) = (trace.surface.point(from.0, from.1), trace.surface.point(to.0, to.1));
+    /// The same line on a surface prepared for many evaluations.
+    pub fn of_prepared(prepared: PreparedSurface, from: (f64, f64), to: (f64, f64)) -> Self {
+        let mut trace = Self { prepared, from, to, panels: Vec::new(), length: 0.0 };
+        let surface = trace.prepared.surface();
+        let (start, end) = (surface.point(from.0, from.1), surface.point(to.0, to.1));
         // Along a pole all is rounding.
         let rounding = EPSILON * start.abs().max(end.abs()).max_element();
         let scale = start.distance(end).max(trace.speed(0.5)).max(rounding / MEASURE_ACCURACY);
-        let stops = [vec![0.0], surface.breaks_between(from, to), vec![1.0]].concat();
+        let stops = [vec![0.0], trace.prepared.surface().breaks_between(from, to), vec![1.0]].concat();
         // A short span between two knots may be run through so fast that no sample of a longer stretch sees it.
         let mut open: Vec<(f64, f64, u32)> = stops.windows(2).rev().map(|w| (w[0], w[1], DEPTH)).collect();
         while let Some((a, b, left)) = open.pop() {
@@ -91,10 +90,10 @@ impl Trace {
         let [p, du, dv] = if t == 0.0 || t == 1.0 {
             // A line may end at a kink: its own direction there is that of what it comes from.
             let lean = |way: f64| if way != 0.0 && (t == 0.0) != (way > 0.0) { OneSided::Before } else { OneSided::After };
-            let jet = self.surface.jet_one_sided(u, v, (lean(along_u), lean(along_v)));
+            let jet = self.prepared.surface().jet_one_sided(u, v, (lean(along_u), lean(along_v)));
             [jet.p, jet.du, jet.dv]
         } else {
-            self.surface.tangents_by(self.quick.as_ref(), u, v)
+            self.prepared.evaluator().tangents(u, v)
         };
         (p, du * along_u + dv * along_v)
     }

@@ -1,7 +1,7 @@
 //! From contacts to nodes and links (`docs/notes/network.md`).
 //!
 //! Everything is made afresh from the contacts, so that inserting, removing and rebuilding cannot differ:
-//! sites (ends, cuts, contacts) are clustered to nodes, nodes become stations along each curve, and the stretches
+//! sites (ends, cuts, contacts) are clustered to nodes, nodes become stations along each curve, and the segments
 //! between stations become links, shared ones once.
 
 use glam::DVec3;
@@ -51,13 +51,13 @@ pub struct Stations {
 pub fn assemble(curves: &mut [NetCurve], parts: &Parts) -> Result<(Vec<Node>, Vec<Link>, Vec<Fault>)> {
     let mut stations = stations(curves, parts)?;
     lonely_rings(curves, parts, &mut stations);
-    let shared = shared::match_stretches(curves, parts, &mut stations);
+    let shared = shared::match_segments(curves, parts, &mut stations);
     Ok(number(curves, stations, shared))
 }
 
 /// A place on a curve that may become a station.
 #[derive(Clone, Copy)]
-struct Mark {
+struct StationMark {
     curve: u32,
     s: f64,
     site: u32,
@@ -68,10 +68,10 @@ fn stations(curves: &[NetCurve], parts: &Parts) -> Result<Stations> {
     let closed: Vec<bool> = curves.iter().map(|c| c.curve.is_closed(tolerance)).collect();
     let lengths: Vec<f64> = curves.iter().map(|c| c.curve.length()).collect();
     let mut sites: Vec<DVec3> = Vec::with_capacity(2 * curves.len() + parts.contacts.len());
-    let mut marks: Vec<Mark> = Vec::with_capacity(2 * sites.capacity());
+    let mut marks: Vec<StationMark> = Vec::with_capacity(2 * sites.capacity());
     for (k, c) in curves.iter().enumerate() {
         let mut mark = |s: f64, at: DVec3| {
-            marks.push(Mark { curve: k as u32, s, site: sites.len() as u32 });
+            marks.push(StationMark { curve: k as u32, s, site: sites.len() as u32 });
             sites.push(at);
         };
         if !closed[k] {
@@ -84,7 +84,7 @@ fn stations(curves: &[NetCurve], parts: &Parts) -> Result<Stations> {
     }
     for contact in parts.contacts {
         for (s, at) in [(contact.s, contact.at)].into_iter().chain(contact.to) {
-            marks.extend([0, 1].map(|side| Mark { curve: contact.curves[side], s: s[side], site: sites.len() as u32 }));
+            marks.extend([0, 1].map(|side| StationMark { curve: contact.curves[side], s: s[side], site: sites.len() as u32 }));
             sites.push(at);
         }
     }
@@ -112,7 +112,7 @@ fn stations(curves: &[NetCurve], parts: &Parts) -> Result<Stations> {
     Ok(stations)
 }
 
-fn counts(marks: &[Mark], n: usize) -> Vec<usize> {
+fn counts(marks: &[StationMark], n: usize) -> Vec<usize> {
     let mut counts = vec![0; n];
     for mark in marks {
         counts[mark.curve as usize] += 1;
@@ -121,7 +121,7 @@ fn counts(marks: &[Mark], n: usize) -> Vec<usize> {
 }
 
 /// Clusters sites and declared points: the node of each site, and the points of the nodes.
-fn nodes(curves: &[NetCurve], sites: &[DVec3], marks: &[Mark], parts: &Parts) -> Result<(Vec<u32>, Vec<DVec3>)> {
+fn nodes(curves: &[NetCurve], sites: &[DVec3], marks: &[StationMark], parts: &Parts) -> Result<(Vec<u32>, Vec<DVec3>)> {
     let all: Vec<DVec3> = sites.iter().chain(parts.points).copied().collect();
     let roots = cluster(&all, parts.tolerance.point);
     let mut order: Vec<(u32, u32)> = roots.iter().zip(0_u32..).map(|(&root, k)| (root, k)).collect();
@@ -184,7 +184,7 @@ fn widest(points: &[DVec3]) -> (f64, usize, usize) {
 }
 
 /// E506, with the widest pair first and the curves they lie on.
-fn ambiguous(curves: &[NetCurve], group: &[(u32, u32)], sites: &[DVec3], marks: &[Mark], tolerance: &Tolerance) -> Fault {
+fn ambiguous(curves: &[NetCurve], group: &[(u32, u32)], sites: &[DVec3], marks: &[StationMark], tolerance: &Tolerance) -> Fault {
     const SHOWN: usize = 4;
     let points: Vec<DVec3> = group.iter().map(|&(_, k)| sites[k as usize]).collect();
     let (diameter, a, b) = widest(&points);
@@ -344,14 +344,14 @@ fn number(curves: &mut [NetCurve], stations: Stations, shared: shared::Shared) -
     (nodes, links, shared.notes)
 }
 
-/// Whether a stretch of one curve runs against the stretch of another that it shares.
+/// Whether a segment of one curve runs against the segment of another that it shares.
 fn runs_against(curves: &[NetCurve], (k, i): (usize, usize), (owner, j): (usize, usize)) -> bool {
     let (net, other) = (&curves[k], &curves[owner]);
     let (own, theirs) = ((net.nodes[i], net.nodes[i + 1]), (other.nodes[j], other.nodes[j + 1]));
     if own.0 != own.1 {
         return own != theirs;
     }
-    // A shared loop: the first quarter tells.
+    // A shared loop: the first quarter decides.
     let at = |net: &NetCurve, i: usize, x: f64| {
         let s = net.stations[i] + (net.stations[i + 1] - net.stations[i]) * x;
         let length = net.curve.length();

@@ -144,7 +144,7 @@ impl Chain {
         self.0.length
     }
 
-    /// Whether two chains run over the same stretches of the same curves, made once and copied.
+    /// Whether two chains run over the same parts of the same curves, made once and copied.
     pub fn is(&self, other: &Self) -> bool {
         let same = |(a, b): (&Run, &Run)| a.curve.is(&b.curve) && a.s0.to_bits() == b.s0.to_bits() && a.s1.to_bits() == b.s1.to_bits();
         Arc::ptr_eq(&self.0, &other.0)
@@ -158,7 +158,7 @@ impl Chain {
         self.0.origin
     }
 
-    /// The same chain made by another expression; a whole curve carries it on.
+    /// The same chain made by another expression; a whole curve takes it over.
     pub fn with_origin(&self, origin: Origin) -> Self {
         if let Some(curve) = self.whole_curve() {
             return Self::of_curve(&curve.with_origin(origin));
@@ -296,7 +296,7 @@ impl Chain {
 
     /// Chains in a row; each must start where the one before ends, else E503 with both ends and the gap.
     ///
-    /// A stretch that is run over twice is E504. There must be at least one part.
+    /// A part that is run over twice is E504. There must be at least one part.
     pub fn join(parts: &[Self], origin: Origin, tolerance: &Tolerance) -> Result<Self> {
         slice::join(parts, origin, tolerance)
     }
@@ -314,8 +314,8 @@ impl Chain {
             let earlier = (0..k).find(|&j| same_curve(&self.0.runs[j].curve, &run.curve));
             let curve = earlier.map_or_else(|| run.curve.moved(motion), |j| runs[j].curve.clone());
             let (old, new) = (run.curve.length(), curve.length());
-            let carried = |s: f64| if s == old { new } else { s * (new / old) };
-            runs.push(Run { s0: carried(run.s0), s1: carried(run.s1), curve });
+            let scaled = |s: f64| if s == old { new } else { s * (new / old) };
+            runs.push(Run { s0: scaled(run.s0), s1: scaled(run.s1), curve });
         }
         Self::of_runs(runs, self.0.origin)
     }

@@ -8,12 +8,12 @@ use crate::base::tolerance::SLIVER;
 use crate::geometry::Enclosure;
 use crate::geometry::enclosure;
 
-/// Derivatives of a chain with respect to its fraction over a stretch.
+/// Derivatives of a chain with respect to its fraction over an interval.
 #[derive(Clone, Copy, Debug)]
 pub struct ChainEnclosure {
     /// First derivative, model units.
     pub d1: Interval3,
-    /// Second derivative, model units; vast at a cusp.
+    /// Second derivative, model units; unbounded at a cusp.
     pub d2: Interval3,
     /// Sum of the jumps of the first derivative inside, coordinate by coordinate.
     pub jumps: DVec3,

@@ -135,7 +135,7 @@ pub struct FlowOptions {
     pub along_v: Vec<usize>,
     /// A node said to be a pole.
     pub pole: Option<usize>,
-    /// The flow must close in u even where node lists cannot tell (two meridians).
+    /// The flow must close in u even where node lists do not show it (two meridians).
     pub closed: bool,
 }
 

@@ -52,7 +52,7 @@ pub fn of_chains(chains: &[Chain], options: &ChainFlow, tolerance: &Tolerance) -
     let grid = Grid { lists: &lists, same_way: &|a, b| same_way(chains, a, b, tolerance) };
     match detect_grid(&grid, &hints) {
         Ok(flow) => Ok((flow, nodes)),
-        Err(fault) => Err(explain(chains, (&nodes, &lists), (fault, &hints), tolerance)),
+        Err(fault) => Err(Meetings { chains, nodes: &nodes, lists: &lists }.explain(fault, &hints, tolerance)),
     }
 }
 
@@ -125,48 +125,54 @@ fn origins(chains: &[Chain]) -> Vec<Origin> {
     chains.iter().map(Chain::origin).collect()
 }
 
-/// A failure of node lists in measurements. Ends that miss by a little are the cause of all that follows from it.
-pub(super) fn explain(
-    chains: &[Chain],
-    (nodes, lists): (&[DVec3], &[NodeList]),
-    (fault, hints): (FlowFault, &FlowOptions),
-    tolerance: &Tolerance,
-) -> Fault {
-    if matches!(fault, FlowFault::Incomplete { .. } | FlowFault::Alone { .. } | FlowFault::TooFew { .. })
-        && let Some(miss) = ends_that_miss(chains, lists, hints, tolerance)
-    {
-        return miss;
+/// Chains with the nodes in which they meet, and the list of nodes of each.
+#[derive(Clone, Copy)]
+pub(super) struct Meetings<'a> {
+    pub chains: &'a [Chain],
+    pub nodes: &'a [DVec3],
+    pub lists: &'a [NodeList],
+}
+
+impl Meetings<'_> {
+    /// A failure of node lists in measurements. Ends that miss by a little are the cause of all that follows from it.
+    pub(super) fn explain(&self, fault: FlowFault, hints: &FlowOptions, tolerance: &Tolerance) -> Fault {
+        let Self { chains, nodes, lists } = *self;
+        if matches!(fault, FlowFault::Incomplete { .. } | FlowFault::Alone { .. } | FlowFault::TooFew { .. })
+            && let Some(miss) = ends_that_miss(chains, lists, hints, tolerance)
+        {
+            return miss;
+        }
+        let origin = |k: usize| chains[k].origin();
+        let unknown = |why: NoFlow| GridFault::FlowUnknown { curves: origins(chains), why };
+        match fault {
+            FlowFault::TooFew { given } => unknown(NoFlow::TooFewCurves { given }),
+            FlowFault::Alone { curve } => {
+                let (gap, nearest, at) = (0..chains.len())
+                    .filter(|&k| k != curve)
+                    .map(|k| (closest_points(&chains[curve], &chains[k]), k))
+                    .map(|((p, q), k)| (p.distance(q), k, p))
+                    .min_by(|a, b| a.0.total_cmp(&b.0))
+                    .unwrap_or((0.0, curve, chains[curve].start()));
+                unknown(NoFlow::Alone { curve: origin(curve), nearest: origin(nearest), gap, at })
+            }
+            FlowFault::NoFamilies { a, b, node } => unknown(NoFlow::NoFamilies { a: origin(a), b: origin(b), at: nodes[node] }),
+            FlowFault::Incomplete { a, b, found, wanted } => {
+                let (p, q) = closest_points(&chains[a], &chains[b]);
+                GridFault::GridIncomplete { a: origin(a), b: origin(b), gap: p.distance(q), at: p, found, wanted }
+            }
+            FlowFault::Double { a, b, nodes: (one, two) } => {
+                GridFault::GridDouble { a: origin(a), b: origin(b), first: nodes[one], second: nodes[two] }
+            }
+            FlowFault::NotMonotone { curve, others: (a, b), nodes: (one, two) } => {
+                GridFault::GridNotMonotone { curve: origin(curve), a: origin(a), b: origin(b), first: nodes[one], second: nodes[two] }
+            }
+            FlowFault::Crosses { a, b, node } => GridFault::FamilyCrosses { a: origin(a), b: origin(b), at: nodes[node] },
+            FlowFault::HalfClosed { closed, open } => unknown(NoFlow::HalfClosed { closed: origin(closed), open: origin(open) }),
+            FlowFault::NotClosed { open } => unknown(NoFlow::NotClosed { open: origin(open) }),
+            FlowFault::NoPole { node } => return no_pole(chains, nodes[node]),
+        }
+        .into()
     }
-    let origin = |k: usize| chains[k].origin();
-    let unknown = |why: NoFlow| GridFault::FlowUnknown { curves: origins(chains), why };
-    match fault {
-        FlowFault::TooFew { given } => unknown(NoFlow::TooFewCurves { given }),
-        FlowFault::Alone { curve } => {
-            let (gap, nearest, at) = (0..chains.len())
-                .filter(|&k| k != curve)
-                .map(|k| (closest_points(&chains[curve], &chains[k]), k))
-                .map(|((p, q), k)| (p.distance(q), k, p))
-                .min_by(|a, b| a.0.total_cmp(&b.0))
-                .unwrap_or((0.0, curve, chains[curve].start()));
-            unknown(NoFlow::Alone { curve: origin(curve), nearest: origin(nearest), gap, at })
-        }
-        FlowFault::NoFamilies { a, b, node } => unknown(NoFlow::NoFamilies { a: origin(a), b: origin(b), at: nodes[node] }),
-        FlowFault::Incomplete { a, b, found, wanted } => {
-            let (p, q) = closest_points(&chains[a], &chains[b]);
-            GridFault::GridIncomplete { a: origin(a), b: origin(b), gap: p.distance(q), at: p, found, wanted }
-        }
-        FlowFault::Double { a, b, nodes: (one, two) } => {
-            GridFault::GridDouble { a: origin(a), b: origin(b), first: nodes[one], second: nodes[two] }
-        }
-        FlowFault::NotMonotone { curve, others: (a, b), nodes: (one, two) } => {
-            GridFault::GridNotMonotone { curve: origin(curve), a: origin(a), b: origin(b), first: nodes[one], second: nodes[two] }
-        }
-        FlowFault::Crosses { a, b, node } => GridFault::FamilyCrosses { a: origin(a), b: origin(b), at: nodes[node] },
-        FlowFault::HalfClosed { closed, open } => unknown(NoFlow::HalfClosed { closed: origin(closed), open: origin(open) }),
-        FlowFault::NotClosed { open } => unknown(NoFlow::NotClosed { open: origin(open) }),
-        FlowFault::NoPole { node } => return no_pole(chains, nodes[node]),
-    }
-    .into()
 }
 
 /// Joins pairs of ends, the nearest first, until the flow is found: the widest of the gaps that had to close is the miss.

@@ -100,7 +100,7 @@ impl Network {
     /// Notes and warnings (shared runs N512, near misses W514) go to `sink`. Fails with E506 when it is not clear which
     /// hits are one node, with E401 for a curve of no length, and with what intersection fails with.
     pub fn build(inputs: Vec<Input>, points: &[DVec3], tolerance: &Tolerance, job: &Job, sink: &mut Vec<Fault>) -> Result<Self> {
-        Self::build_after(None, inputs, (points, tolerance), job, sink)
+        Self::build_after(None, inputs, points, tolerance, job, sink)
     }
 
     /// The same with the contacts of curves that a network `before`, of the same tolerance, holds already: made once and
@@ -108,7 +108,8 @@ impl Network {
     pub fn build_after(
         before: Option<&Self>,
         inputs: Vec<Input>,
-        (points, tolerance): (&[DVec3], &Tolerance),
+        points: &[DVec3],
+        tolerance: &Tolerance,
         job: &Job,
         sink: &mut Vec<Fault>,
     ) -> Result<Self> {

@@ -26,7 +26,7 @@ pub struct Contact {
     pub s: [f64; 2],
     /// Where.
     pub at: DVec3,
-    /// The other end of a stretch that both run over: arc lengths (the second one may be less than its start) and point.
+    /// The other end of an overlap: arc lengths (the second one may be less than its start) and point.
     pub to: Option<([f64; 2], DVec3)>,
 }
 

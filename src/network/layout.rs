@@ -59,7 +59,7 @@ pub fn lay_out(layout: &Layout) -> Result<Flow, Failure> {
         let at: Vec<f64> = columns.iter().map(|&m| along(psi[n], m, n)).collect();
         let nodes: Vec<usize> = columns.iter().map(|&m| crossings[m][n]).collect();
         let others: Vec<usize> = columns.iter().map(|&m| phi[m]).collect();
-        let reversed = direction((psi[n], &at), row_ways.as_ref().map(|ways| ways[k]), (&others, &nodes))?;
+        let reversed = direction(psi[n], &at, row_ways.as_ref().map(|ways| ways[k]), &others, &nodes)?;
         along_u.push(Member { curve: psi[n], reversed, crossings: at });
     }
     let column_ways = closed_v.then(|| {
@@ -76,10 +76,10 @@ pub fn lay_out(layout: &Layout) -> Result<Flow, Failure> {
         let reversed = match start_pole {
             Some(pole) => {
                 let reversed = lists[phi[m]].nodes[0] != pole;
-                monotone(phi[m], &at, reversed, (&others, &nodes))?;
+                monotone(phi[m], &at, reversed, &others, &nodes)?;
                 reversed
             }
-            None => direction((phi[m], &at), column_ways.as_ref().map(|ways| ways[k]), (&others, &nodes))?,
+            None => direction(phi[m], &at, column_ways.as_ref().map(|ways| ways[k]), &others, &nodes)?,
         };
         along_v.push(Member { curve: phi[m], reversed, crossings: at });
     }
@@ -146,7 +146,7 @@ fn enough(layout: &Layout, closed_u: bool, closed_v: bool) -> Result<(), Failure
     if across_u && across_v { Ok(()) } else { Err((0.5, FlowFault::TooFew { given: layout.grid.lists.len() })) }
 }
 
-/// The Φ that orders the Ψ and tells +v between poles: the first curve written when it is one, else Φ at u = 0.
+/// The Φ that orders the Ψ and gives +v between poles: the first curve written when it is one, else Φ at u = 0.
 fn guide(layout: &Layout, first_column: usize) -> usize {
     let Division { phi, psi, .. } = layout.division;
     if psi.first().is_none_or(|&c| phi[0] < c) && !layout.division.poles.is_empty() { 0 } else { first_column }
@@ -178,7 +178,7 @@ fn start_pole(layout: &Layout, guide: usize) -> Option<usize> {
 }
 
 /// Whether each ring runs against the one at place `first`, from neighbour to neighbour: only where at most two curves pass
-/// them, as more than two tell by their order.
+/// them, as the order of more than two decides.
 fn ways(grid: &Grid, rings: &[Ring], first: usize) -> Vec<bool> {
     let mut ways = vec![false; rings.len()];
     if rings.iter().any(|ring| ring.passages.len() > 2) {
@@ -191,11 +191,11 @@ fn ways(grid: &Grid, rings: &[Ring], first: usize) -> Vec<bool> {
     ways
 }
 
-/// Whether a curve meets the others in falling order; rings (`way`) by their cyclic order, or as they are told where they have none.
-fn direction((curve, at): (usize, &[f64]), way: Option<bool>, others: (&[usize], &[usize])) -> Result<bool, Failure> {
+/// Whether a curve meets the others in falling order; rings (`way`) by their cyclic order, or as `way` says where they have none.
+fn direction(curve: usize, at: &[f64], way: Option<bool>, others: &[usize], nodes: &[usize]) -> Result<bool, Failure> {
     let Some(way) = way else {
         let reversed = at.len() > 1 && at[at.len() - 1] < at[0];
-        monotone(curve, at, reversed, others)?;
+        monotone(curve, at, reversed, others, nodes)?;
         return Ok(reversed);
     };
     if at.len() <= 2 {
@@ -205,11 +205,11 @@ fn direction((curve, at): (usize, &[f64]), way: Option<bool>, others: (&[usize],
     let turns: Vec<f64> = at.iter().map(|f| (f - at[0]).rem_euclid(1.0)).collect();
     let reversed = turns[turns.len() - 1] < turns[1];
     let ordered: Vec<f64> = if reversed { turns.iter().map(|t| (1.0 - t).rem_euclid(1.0)).collect() } else { turns };
-    monotone(curve, &ordered, false, others)?;
+    monotone(curve, &ordered, false, others, nodes)?;
     Ok(reversed)
 }
 
-fn monotone(curve: usize, at: &[f64], reversed: bool, (others, nodes): (&[usize], &[usize])) -> Result<(), Failure> {
+fn monotone(curve: usize, at: &[f64], reversed: bool, others: &[usize], nodes: &[usize]) -> Result<(), Failure> {
     match at.windows(2).position(|w| if reversed { w[1] >= w[0] } else { w[1] <= w[0] }) {
         None => Ok(()),
         Some(k) => Err((1.0, FlowFault::NotMonotone { curve, others: (others[k], others[k + 1]), nodes: (nodes[k], nodes[k + 1]) })),

@@ -36,10 +36,10 @@ pub fn meet(a: &Chain, b: &Chain, tolerance: &Tolerance) -> Result<Vec<Meeting>>
         for (kb, run_b) in b.runs().iter().enumerate() {
             job::poll();
             if same_curve(&run_a.curve, &run_b.curve) {
-                on_one_curve((a, ka), (b, kb), tolerance, &mut found);
+                on_one_curve(RunOf { chain: a, place: ka }, RunOf { chain: b, place: kb }, tolerance, &mut found);
             } else if run_a.curve.bbox().touches(&run_b.curve.bbox(), tolerance.point) {
                 for hit in intersect(&run_a.curve, &run_b.curve, tolerance)? {
-                    collect(hit, (a, ka), (b, kb), tolerance, &mut found);
+                    collect(hit, RunOf { chain: a, place: ka }, RunOf { chain: b, place: kb }, tolerance, &mut found);
                 }
             }
         }
@@ -92,7 +92,7 @@ pub fn closest_points(a: &Chain, b: &Chain) -> (DVec3, DVec3) {
     best
 }
 
-/// Places of the first two of some chains that run over the same stretches, in either direction.
+/// Places of the first two of some chains that run over the same parts of curves, in either direction.
 pub fn given_twice(chains: &[Chain], tolerance: &Tolerance) -> Option<(usize, usize)> {
     let ends = |c: &Chain| (c.start(), c.end());
     let same_ends = |a: &Chain, b: &Chain| {
@@ -123,21 +123,38 @@ fn on_run(run: &Run, s: f64, tolerance: &Tolerance) -> Option<f64> {
     turns.iter().map(|turn| s + turn).find(|s| *s >= lo - tolerance.point && *s <= hi + tolerance.point).map(|s| s.clamp(lo, hi))
 }
 
+/// A run of a chain.
+#[derive(Clone, Copy)]
+struct RunOf<'a> {
+    chain: &'a Chain,
+    place: usize,
+}
+
+impl RunOf<'_> {
+    fn run(&self) -> &Run {
+        &self.chain.runs()[self.place]
+    }
+
+    fn fraction(&self, s: f64) -> f64 {
+        self.chain.fraction(self.place, s)
+    }
+}
+
 /// Turns a hit of two curves into a meeting of two chains, when it lies on both runs.
-fn collect(hit: Hit, (a, ka): (&Chain, usize), (b, kb): (&Chain, usize), tolerance: &Tolerance, found: &mut Vec<Meeting>) {
-    let (run_a, run_b) = (&a.runs()[ka], &b.runs()[kb]);
+fn collect(hit: Hit, a: RunOf, b: RunOf, tolerance: &Tolerance, found: &mut Vec<Meeting>) {
+    let (run_a, run_b) = (a.run(), b.run());
     match hit {
         Hit::Point { ta, tb, at, tangent, .. } => {
             let sa = on_run(run_a, run_a.curve.length_at(ta), tolerance);
             let sb = on_run(run_b, run_b.curve.length_at(tb), tolerance);
             if let (Some(sa), Some(sb)) = (sa, sb) {
-                found.push(Meeting { point: at, fa: a.fraction(ka, sa), fb: b.fraction(kb, sb), tangent, shared_to: None });
+                found.push(Meeting { point: at, fa: a.fraction(sa), fb: b.fraction(sb), tangent, shared_to: None });
             }
         }
         Hit::Overlap { a: (ta0, ta1), b: (tb0, tb1) } => {
             let along_a = (run_a.curve.length_at(ta0), run_a.curve.length_at(ta1));
             let along_b = (run_b.curve.length_at(tb0), run_b.curve.length_at(tb1));
-            // Both runs may hold only a part of the shared stretch: share of it from 0 to 1 that each holds.
+            // Both runs may hold only a part of the overlap: share of it from 0 to 1 that each holds.
             let held = |run: &Run, (s0, s1): (f64, f64)| {
                 let (lo, hi) = (run.s0.min(run.s1), run.s0.max(run.s1));
                 let share = |s: f64| (s - s0) / (s1 - s0);
@@ -146,45 +163,39 @@ fn collect(hit: Hit, (a, ka): (&Chain, usize), (b, kb): (&Chain, usize), toleran
             let (held_a, held_b) = (held(run_a, along_a), held(run_b, along_b));
             let (from, to) = (held_a.0.max(held_b.0), held_a.1.min(held_b.1));
             let at = |share: f64| (along_a.0 + (along_a.1 - along_a.0) * share, along_b.0 + (along_b.1 - along_b.0) * share);
-            push_stretch((a, ka), (b, kb), (at(from), at(to)), tolerance, found);
+            push_shared(a, b, (at(from), at(to)), tolerance, found);
         }
     }
 }
 
-/// A shared stretch given by arc lengths on both curves; one of no length is a point, one of negative length nothing.
-fn push_stretch(
-    (a, ka): (&Chain, usize),
-    (b, kb): (&Chain, usize),
-    (from, to): ((f64, f64), (f64, f64)),
-    tolerance: &Tolerance,
-    found: &mut Vec<Meeting>,
-) {
+/// An overlap given by arc lengths on both curves; one of no length is a point, one of negative length nothing.
+fn push_shared(a: RunOf, b: RunOf, (from, to): ((f64, f64), (f64, f64)), tolerance: &Tolerance, found: &mut Vec<Meeting>) {
     let length = to.0 - from.0;
     if length < -tolerance.point {
         return;
     }
-    let meeting = |(sa, sb): (f64, f64)| (a.fraction(ka, sa), b.fraction(kb, sb));
+    let meeting = |(sa, sb): (f64, f64)| (a.fraction(sa), b.fraction(sb));
     let (mut first, mut last) = (meeting(from), meeting(to));
     if last.0 < first.0 {
         std::mem::swap(&mut first, &mut last);
     }
     let shared_to = (length > tolerance.point).then_some(last);
-    found.push(Meeting { point: a.point(first.0), fa: first.0, fb: first.1, tangent: true, shared_to });
+    found.push(Meeting { point: a.chain.point(first.0), fa: first.0, fb: first.1, tangent: true, shared_to });
 }
 
 /// Two runs on one curve share what both run over.
-fn on_one_curve((a, ka): (&Chain, usize), (b, kb): (&Chain, usize), tolerance: &Tolerance, found: &mut Vec<Meeting>) {
-    let (run_a, run_b) = (&a.runs()[ka], &b.runs()[kb]);
+fn on_one_curve(a: RunOf, b: RunOf, tolerance: &Tolerance, found: &mut Vec<Meeting>) {
+    let (run_a, run_b) = (a.run(), b.run());
     let length = run_a.curve.length();
     let turns: &[f64] = if run_a.curve.is_closed(tolerance) { &[-length, 0.0, length] } else { &[0.0] };
     for turn in turns {
         let lo = run_a.s0.min(run_a.s1).max(run_b.s0.min(run_b.s1) + turn);
         let hi = run_a.s0.max(run_a.s1).min(run_b.s0.max(run_b.s1) + turn);
-        push_stretch((a, ka), (b, kb), ((lo, lo - turn), (hi, hi - turn)), tolerance, found);
+        push_shared(a, b, ((lo, lo - turn), (hi, hi - turn)), tolerance, found);
     }
 }
 
-/// Sorted along `a`, stretches joined over joints, each node once.
+/// Sorted along `a`, overlaps joined over joints, each node once.
 fn tidy(a: &Chain, b: &Chain, mut found: Vec<Meeting>, tolerance: &Tolerance) -> Vec<Meeting> {
     let (near_a, near_b) = (tolerance.point / a.length(), tolerance.point / b.length());
     let (closed_a, closed_b) = (a.is_closed(tolerance), b.is_closed(tolerance));
@@ -203,7 +214,7 @@ fn tidy(a: &Chain, b: &Chain, mut found: Vec<Meeting>, tolerance: &Tolerance) ->
         if let Some(last) = out.last_mut()
             && last.shared_to.is_some_and(|(fa, fb)| m.fa <= fa + near_a && (m.shared_to.is_none() || (m.fb - fb).abs() <= near_b))
         {
-            // A point on a stretch adds nothing, a stretch that goes on lengthens it.
+            // A point on an overlap adds nothing, an overlap that goes on lengthens it.
             if let (Some(end), Some(more)) = (&mut last.shared_to, m.shared_to)
                 && more.0 > end.0
             {
@@ -217,7 +228,7 @@ fn tidy(a: &Chain, b: &Chain, mut found: Vec<Meeting>, tolerance: &Tolerance) ->
         if m.shared_to.is_none() && out.iter().rev().take_while(|k| m.fa - k.fa <= REACH * near_a).any(near) {
             continue;
         }
-        // A point where a stretch begins is a part of it.
+        // A point where an overlap begins is a part of it.
         if m.shared_to.is_some() {
             while out.last().is_some_and(near) {
                 out.pop();

@@ -3,7 +3,7 @@
 //! An end that meets something at its node is joined: it is free to pass close to others, as neighbours of a dense
 //! polygon do. A curve shorter than the search distance misses nothing and is not missed.
 //!
-//! Curves are cut into stretches whose boxes follow from arc length alone: a stretch of length h between points d
+//! Curves are cut into pieces whose boxes follow from arc length alone: a piece of length h between points d
 //! apart stays within √(h² − d²)/2 of their segment. A tree of these boxes leaves few curves to measure.
 
 use glam::DVec3;
@@ -17,8 +17,8 @@ use crate::base::tolerance::{NEAR_MISS, Tolerance};
 use crate::geometry::closest;
 use crate::network::fault::{CurveEnd, EndFault};
 
-/// A curve as long as the model is cut into about this many stretches.
-const STRETCHES: f64 = 24.0;
+/// A curve as long as the model is cut into about this many pieces.
+const PIECES: f64 = 24.0;
 
 /// Curves handed to a thread at once.
 const CHUNK: usize = 512;
@@ -33,21 +33,21 @@ pub fn near_misses(curves: &[NetCurve], one: Option<usize>, tolerance: &Toleranc
     let size = curves.iter().fold(Box3::EMPTY, |all, c| all.union(c.curve.bbox())).diagonal();
     let chunks = curves.len().div_ceil(CHUNK);
     let range = |i: usize| i * CHUNK..((i + 1) * CHUNK).min(curves.len());
-    let stretches = par::map(chunks, |i| {
+    let pieces = par::map(chunks, |i| {
         let mut found = Vec::with_capacity(CHUNK);
         for k in range(i).filter(|&k| curves[k].curve.length() >= reach) {
-            stretches(&curves[k], size, |bbox| found.push((bbox, k)));
+            pieces(&curves[k], size, |bbox| found.push((bbox, k)));
         }
         found
     })
     .concat();
     let groups: Vec<&[(NodeId, End)]> = ends.chunk_by(|a, b| a.0 == b.0).collect();
     let boxes: Vec<Box3> = groups.iter().map(|group| Box3::of(group.iter().map(|(_, end)| end.at))).collect();
-    let tree = BoxTree::build(&stretches.iter().map(|s| s.0).collect::<Vec<_>>());
+    let tree = BoxTree::build(&pieces.iter().map(|s| s.0).collect::<Vec<_>>());
     let mut near: Vec<(usize, usize)> = Vec::new();
-    BoxTree::build(&boxes).pairs_with(&tree, reach, |group, stretch| {
+    BoxTree::build(&boxes).pairs_with(&tree, reach, |group, piece| {
         // A curve that passes through the node is not missed.
-        let other = stretches[stretch].1;
+        let other = pieces[piece].1;
         if !curves[other].nodes.contains(&groups[group][0].0) {
             near.push((group, other));
         }
@@ -78,19 +78,19 @@ struct Miss {
     fault: Fault,
 }
 
-fn stretches(net: &NetCurve, size: f64, mut found: impl FnMut(Box3)) {
+fn pieces(net: &NetCurve, size: f64, mut found: impl FnMut(Box3)) {
     let length = net.curve.length();
-    let n = (STRETCHES * length / size).clamp(1.0, STRETCHES).ceil() as usize;
+    let n = (PIECES * length / size).clamp(1.0, PIECES).ceil() as usize;
     let step = length / n as f64;
-    let mut stretch = |p: DVec3, q: DVec3| {
+    let mut piece = |p: DVec3, q: DVec3| {
         let slack = 0.5 * (step * step - p.distance_squared(q)).max(0.0).sqrt();
         let chord = Box3::of([p, q]);
         found(Box3 { min: chord.min - slack, max: chord.max + slack });
     };
     if n == 1 {
-        stretch(net.curve.start(), net.curve.end());
+        piece(net.curve.start(), net.curve.end());
     } else {
-        net.curve.points_along(n + 1).windows(2).for_each(|w| stretch(w[0], w[1]));
+        net.curve.points_along(n + 1).windows(2).for_each(|w| piece(w[0], w[1]));
     }
 }
 

@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::chain::Chain;
 use super::flow::{Flow, FlowFault, FlowOptions, NodeList};
-use super::flow_chains::{explain, node_lists};
+use super::flow_chains::{Meetings, node_lists};
 use super::flow_detection::{Grid, detect_grid, shared};
 use super::meet::closest_points;
 use super::ring_way::same_way;
@@ -20,7 +20,7 @@ use crate::network::fault::NetFault;
 const COMPARED: usize = 32;
 
 /// Each curve once: one that runs along another over its whole length, either way, is the same curve given twice, as a net
-/// closed by repeating its first curve has it. Of curves that differ within the tolerance the one kept is told by its points,
+/// closed by repeating its first curve has it. Of curves that differ within the tolerance which one is kept follows from its points,
 /// not by its place in the list; it runs like the first one given.
 pub fn distinct(family: Vec<Chain>, tolerance: &Tolerance) -> Vec<Chain> {
     let mut kept: Vec<Chain> = Vec::with_capacity(family.len());
@@ -71,16 +71,12 @@ pub fn of_net(chains: &[Chain], profiles: usize, tolerance: &Tolerance) -> Resul
     let grid = Grid { lists: &lists, same_way: &|a, b| same_way(chains, a, b, tolerance) };
     match detect_grid(&grid, &hints) {
         Ok(flow) => Ok((flow, nodes)),
-        Err(fault) => Err(net_fault(chains, (&nodes, &lists), (fault, &hints), tolerance)),
+        Err(fault) => Err(net_fault(&Meetings { chains, nodes: &nodes, lists: &lists }, fault, &hints, tolerance)),
     }
 }
 
-fn net_fault(
-    chains: &[Chain],
-    (nodes, lists): (&[DVec3], &[NodeList]),
-    (fault, hints): (FlowFault, &FlowOptions),
-    tolerance: &Tolerance,
-) -> Fault {
+fn net_fault(meetings: &Meetings, fault: FlowFault, hints: &FlowOptions, tolerance: &Tolerance) -> Fault {
+    let Meetings { chains, nodes, lists } = *meetings;
     let profiles = hints.along_u.len();
     let origin = |k: usize| chains[k].origin();
     match fault {
@@ -94,7 +90,7 @@ fn net_fault(
             second: nodes[two],
         }
         .into(),
-        other => missing(chains, lists, profiles, tolerance).unwrap_or_else(|| explain(chains, (nodes, lists), (other, hints), tolerance)),
+        other => missing(chains, lists, profiles, tolerance).unwrap_or_else(|| meetings.explain(other, hints, tolerance)),
     }
 }
 

@@ -1,7 +1,7 @@
-//! Which of two ways neighbouring rings run: carried from one to the other along the curves that cross both.
+//! Which of two ways neighbouring rings run: transported from one to the other along the curves that cross both.
 //!
 //! A ring that at most two curves cross is split by them into two arcs of equal standing. Which arc of the next ring goes
-//! on which is told by the vectors from one arc to the other, carried along the crossing curves without turning about
+//! on which follows from the vectors from one arc to the other, transported along the crossing curves without turning about
 //! them. Places in space would not do: a profile that winds about its guide has its upper side below within half a turn.
 
 use glam::DVec3;
@@ -13,15 +13,15 @@ use crate::base::tolerance::Tolerance;
 
 /// Places on an arc at which the vectors are compared.
 const SAMPLES: usize = 8;
-/// Steps in which a vector is carried along a curve.
+/// Steps in which a vector is transported along a curve.
 const STEPS: usize = 64;
 
 /// Whether two neighbouring rings run the same way; the answer is the same with the two exchanged and each turned round.
 pub fn same_way(chains: &[Chain], a: &Ring, b: &Ring, tolerance: &Tolerance) -> bool {
     let (from, to) = (across(&chains[a.curve], &a.passages), across(&chains[b.curve], &b.passages));
     let likeness = |p: &Passage, q: &Passage| -> f64 {
-        let carry = Carry::new(&chains[p.by], (p.there, q.there), tolerance);
-        from.iter().zip(&to).map(|(x, y)| carry.vector(*x).dot(*y)).sum()
+        let transport = Transport::new(&chains[p.by], (p.there, q.there), tolerance);
+        from.iter().zip(&to).map(|(x, y)| transport.vector(*x).dot(*y)).sum()
     };
     a.passages.iter().zip(&b.passages).map(|(p, q)| likeness(p, q)).sum::<f64>() >= 0.0
 }
@@ -36,9 +36,9 @@ fn across(ring: &Chain, passages: &[Passage]) -> Vec<DVec3> {
 }
 
 /// Carrying of vectors along a curve by the least rotations that turn tangent into tangent.
-struct Carry(Vec<(DVec3, DVec3)>);
+struct Transport(Vec<(DVec3, DVec3)>);
 
-impl Carry {
+impl Transport {
     /// Along the curve between two fractions; over the shorter part of a closed one.
     fn new(chain: &Chain, (from, to): (f64, f64), tolerance: &Tolerance) -> Self {
         let straight = to - from;

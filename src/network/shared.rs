@@ -1,4 +1,4 @@
-//! Stretches that two curves run over: the same nodes on both, one link, owned by the curve first by name.
+//! Overlaps of two curves: the same nodes on both, one link, owned by the curve first by name.
 
 use super::assemble::{Parts, Station, Stations, settle};
 use super::cluster::Sets;
@@ -9,22 +9,22 @@ use crate::base::tolerance::Tolerance;
 use crate::geometry::closest;
 use crate::network::fault::GraphFault;
 
-/// Rounds of carrying nodes from curve to curve over shared stretches; chains of more curves than this are not one run.
+/// Rounds of copying nodes from curve to curve over overlaps; chains of more curves than this are not one run.
 const ROUNDS: usize = 16;
 
-/// Which stretch owns each stretch, and notes about it.
+/// Which segment owns each segment, and notes about it.
 #[derive(Debug, Default)]
 pub struct Shared {
-    /// First stretch of each curve in the list of all; empty when nothing is shared.
+    /// First segment of each curve in the list of all; empty when nothing is shared.
     first: Vec<usize>,
-    /// Owner of each stretch, as curve and place.
+    /// Owner of each segment, as curve and place.
     owner: Vec<(u32, u32)>,
-    /// One N512 per pair of curves and stretch.
+    /// One N512 per pair of curves and overlap.
     pub notes: Vec<Fault>,
 }
 
 impl Shared {
-    /// Curve and place of the stretch that owns stretch `i` of curve `k`; itself when it is not shared.
+    /// Curve and place of the segment that owns segment `i` of curve `k`; itself when it is not shared.
     pub fn owner(&self, k: usize, i: usize) -> (usize, usize) {
         self.first.get(k).map_or((k, i), |first| {
             let (curve, place) = self.owner[first + i];
@@ -33,8 +33,8 @@ impl Shared {
     }
 }
 
-/// Gives both curves of every shared stretch the same nodes, and finds the owner of every stretch between nodes.
-pub fn match_stretches(curves: &[NetCurve], parts: &Parts, stations: &mut Stations) -> Shared {
+/// Gives both curves of every overlap the same nodes, and finds the owner of every segment between nodes.
+pub fn match_segments(curves: &[NetCurve], parts: &Parts, stations: &mut Stations) -> Shared {
     let overlaps: Vec<&Contact> = parts.contacts.iter().filter(|c| c.to.is_some()).collect();
     if overlaps.is_empty() {
         return Shared::default();
@@ -42,8 +42,8 @@ pub fn match_stretches(curves: &[NetCurve], parts: &Parts, stations: &mut Statio
     for _ in 0..ROUNDS {
         let mut changed = false;
         for overlap in &overlaps {
-            changed |= carry(curves, overlap, 0, stations, parts.tolerance);
-            changed |= carry(curves, overlap, 1, stations, parts.tolerance);
+            changed |= copy_nodes(curves, overlap, 0, stations, parts.tolerance);
+            changed |= copy_nodes(curves, overlap, 1, stations, parts.tolerance);
         }
         if !changed {
             break;
@@ -65,7 +65,7 @@ pub fn match_stretches(curves: &[NetCurve], parts: &Parts, stations: &mut Statio
     let rank = ranks(curves);
     let roots = sets.roots();
     let mut owner: Vec<(u32, u32)> = all.clone();
-    let key = |stretch: (u32, u32)| (rank[stretch.0 as usize], stretch.1);
+    let key = |segment: (u32, u32)| (rank[segment.0 as usize], segment.1);
     for (k, &root) in roots.iter().enumerate() {
         if key(all[k]) < key(owner[root as usize]) {
             owner[root as usize] = all[k];
@@ -82,14 +82,14 @@ fn note(curves: &[NetCurve], overlap: &Contact) -> Option<Fault> {
     Some(GraphFault::SharedRun { owner, other, run: (overlap.at, to), length: (s[0] - overlap.s[0]).abs() }.into())
 }
 
-/// Arc lengths of one side's stretch, ascending.
+/// Arc lengths of one side's overlap, ascending.
 fn span(overlap: &Contact, side: usize) -> (f64, f64) {
     let end = overlap.to.map_or(overlap.s[side], |(s, _)| s[side]);
     (overlap.s[side].min(end), overlap.s[side].max(end))
 }
 
-/// Carries the nodes inside a stretch from one side to the other; whether any was new there.
-fn carry(curves: &[NetCurve], overlap: &Contact, from: usize, stations: &mut Stations, tolerance: &Tolerance) -> bool {
+/// Copies the nodes inside an overlap from one side to the other; whether any was new there.
+fn copy_nodes(curves: &[NetCurve], overlap: &Contact, from: usize, stations: &mut Stations, tolerance: &Tolerance) -> bool {
     let (a, b) = (overlap.curves[from] as usize, overlap.curves[1 - from] as usize);
     let ((a0, a1), (b0, b1)) = (span(overlap, from), span(overlap, 1 - from));
     let reach = 4.0 * tolerance.point;
@@ -113,7 +113,7 @@ fn carry(curves: &[NetCurve], overlap: &Contact, from: usize, stations: &mut Sta
     true
 }
 
-/// Stretches between neighbouring nodes that lie in the shared run on both sides and have the same ends.
+/// Segments between neighbouring nodes that lie in the shared run on both sides and have the same ends.
 fn pairs(curves: &[NetCurve], overlap: &Contact, stations: &Stations, tolerance: &Tolerance) -> Vec<(usize, usize)> {
     let inside = |side: usize| -> Vec<(usize, (u32, u32))> {
         let k = overlap.curves[side] as usize;
@@ -125,7 +125,7 @@ fn pairs(curves: &[NetCurve], overlap: &Contact, stations: &Stations, tolerance:
             .filter(|&i| {
                 let s0 = row[i].s;
                 let s1 = if i + 1 < row.len() { row[i + 1].s } else { row[0].s + length };
-                // A stretch past the start of a ring lies in a run that ends there only when it is the whole ring.
+                // A segment past the start of a ring lies in a run that ends there only when it is the whole ring.
                 [0.0, length].iter().any(|turn| s0 - turn >= lo - reach && s1 - turn <= hi + reach)
             })
             .map(|i| (i, (row[i].node, row[(i + 1) % row.len()].node)))

@@ -54,7 +54,8 @@ pub fn may_snap(gap: f64, shorter: f64) -> bool {
 pub fn snap(
     ends: &[SnapEnd],
     points: &[DVec3],
-    (distance, asked): (f64, Origin),
+    distance: f64,
+    asked: Origin,
     tolerance: &Tolerance,
     sink: &mut Vec<Fault>,
 ) -> Result<Vec<Move>> {
@@ -119,7 +120,7 @@ mod tests {
     fn moved(ends: &[SnapEnd], points: &[f64]) -> Result<Vec<(usize, f64)>> {
         let points: Vec<DVec3> = points.iter().map(|&x| DVec3::new(x, 0.0, 0.0)).collect();
         let mut sink = Vec::new();
-        let moves = snap(ends, &points, (0.5, Origin::NONE), &Tolerance::new(1e-6, 10.0), &mut sink)?;
+        let moves = snap(ends, &points, 0.5, Origin::NONE, &Tolerance::new(1e-6, 10.0), &mut sink)?;
         assert_eq!(sink.len(), moves.len());
         Ok(moves.into_iter().map(|m| (m.end, m.to.x)).collect())
     }

@@ -134,7 +134,7 @@ impl Pipeline for Stages<'_> {
             before.map(|before| before.network.clone())
         });
         let (parts, job) = (inputs.len(), cx.job);
-        let made = || Network::build_after(before.as_deref(), inputs, (&points, &tolerance), job, &mut said);
+        let made = || Network::build_after(before.as_deref(), inputs, &points, &tolerance, job, &mut said);
         let network = Arc::new(within_work("the network", WORK_OF_A_CURVE.saturating_mul(parts as u64), made)?);
         cx.say_all(&said);
         if let (Some(mut kept), Some(inputs)) = (self.kept(), again) {

@@ -65,6 +65,6 @@ pub use crate::surface::shapes::nurbs::NurbsSurface;
 pub use crate::surface::swept::extrude::extrude;
 pub use crate::surface::swept::revolve::{axis_of, revolve};
 pub use crate::surface::trims::divide::{divide, split};
-pub use crate::surface::trims::holes::{trim, with_loops};
 pub use crate::surface::trims::outlined::{Doubt, Ground, Outlined, outlined};
-pub use crate::surface::trims::project::{Way, carried};
+pub use crate::surface::trims::project::{Way, project};
+pub use crate::surface::trims::trim::{trim, with_loops};

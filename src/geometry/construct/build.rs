@@ -13,8 +13,9 @@ use crate::base::math;
 use crate::base::origin::Origin;
 use crate::base::tolerance::{EPSILON, NUDGE, PARALLEL};
 use crate::geometry::curves::composite::Composite;
-use crate::geometry::curves::curve::{Curve, Kind, Shape};
+use crate::geometry::curves::curve::{Curve, Shape};
 use crate::geometry::data::fault::{CurveFault, KnotFault};
+use crate::geometry::data::kind::Kind;
 use crate::geometry::shapes::arc::EllipticArc;
 use crate::geometry::shapes::helix::Helix;
 use crate::geometry::shapes::nurbs::{MAX_DEGREE, Nurbs, weighted};
@@ -146,10 +147,10 @@ fn sweep_of(angle: f64, argument: &'static str, of: Origin) -> Result<(f64, f64)
 /// Arc about `center` from `start` by `angle` radians (positive: counter-clockwise seen against `normal`), up to one turn.
 pub fn arc_center(center: DVec3, start: DVec3, angle: f64, normal: DVec3, origin: Origin) -> Result<Curve> {
     let (sweep, sign) = sweep_of(angle, "angle", origin)?;
-    round_arc((center, start), normal, (sweep, sign), Kind::Arc, origin)
+    round_arc(center, start, normal, sweep, sign, Kind::Arc, origin)
 }
 
-fn round_arc((center, start): (DVec3, DVec3), normal: DVec3, (sweep, sign): (f64, f64), kind: Kind, origin: Origin) -> Result<Curve> {
+fn round_arc(center: DVec3, start: DVec3, normal: DVec3, sweep: f64, sign: f64, kind: Kind, origin: Origin) -> Result<Curve> {
     finite(center, "center", origin)?;
     finite(start, "start", origin)?;
     let normal = direction(normal, "normal", "with a length", origin)?;
@@ -167,7 +168,7 @@ fn round_arc((center, start): (DVec3, DVec3), normal: DVec3, (sweep, sign): (f64
 
 /// Whole circle that begins at `start`, counter-clockwise seen against `normal`.
 pub fn circle_start(center: DVec3, start: DVec3, normal: DVec3, origin: Origin) -> Result<Curve> {
-    round_arc((center, start), normal, (TAU, 1.0), Kind::Circle, origin)
+    round_arc(center, start, normal, TAU, 1.0, Kind::Circle, origin)
 }
 
 /// Whole circle of a radius; begins on the model's x axis seen from the centre (y where the normal is x).

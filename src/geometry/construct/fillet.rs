@@ -14,8 +14,9 @@ use crate::base::tolerance::{EPSILON, NEAREST, NUDGE, ROUNDING_SHARE};
 use crate::geometry::construct::build::{all_different, composite, enough, finite, finite_points};
 use crate::geometry::construct::offset_build::{height_over, smooth_pieces};
 use crate::geometry::curves::composite::Composite;
-use crate::geometry::curves::curve::{Curve, Kind, Shape};
+use crate::geometry::curves::curve::{Curve, Shape};
 use crate::geometry::data::corner_fault::CornerFault;
+use crate::geometry::data::kind::Kind;
 use crate::geometry::shapes::arc::EllipticArc;
 
 /// Steps of the radius from nothing to the wanted one, where nothing hinders.
@@ -322,7 +323,7 @@ impl Touching<'_> {
             if a.factor <= 0.0 || b.factor <= 0.0 {
                 return None;
             }
-            // At the old radius the first step follows the change of radius, later ones mend what is left.
+            // At the old radius the first step follows the change of radius, later ones correct what is left.
             let miss = if round == 0 { (a.left - b.left) * (to - from) } else { a.p - b.p };
             if round > 0 && miss.length() <= EPSILON * scale {
                 return Some((ta, tb));

@@ -3,7 +3,7 @@
 pub mod build;
 pub mod fewest;
 pub mod fillet;
-pub mod fit;
+pub mod fit_curve;
 pub mod offset_build;
 pub mod polynomial;
 pub mod rebuilt;

@@ -14,8 +14,9 @@ use crate::base::solve;
 use crate::base::tolerance::{NEAREST, NUDGE, PARALLEL, Tolerance};
 use crate::geometry::construct::build::{arc_center, direction, finite};
 use crate::geometry::curves::composite::Composite;
-use crate::geometry::curves::curve::{Curve, Kind, Shape};
+use crate::geometry::curves::curve::{Curve, Shape};
 use crate::geometry::curves::offset::Offset;
+use crate::geometry::data::kind::Kind;
 use crate::geometry::query::intersect::{Hit, intersect};
 use crate::geometry::shapes::arc::EllipticArc;
 
@@ -27,7 +28,7 @@ pub fn offset(curve: &Curve, distance: f64, normal: DVec3, origin: Origin) -> Re
     finite(DVec3::splat(distance), "distance", origin)?;
     let normal = direction(normal, "normal", "with a length", origin)?;
     check_plane(curve, normal)?;
-    let plan = Plan { distance, normal, origin };
+    let plan = OffsetPlan { distance, normal, origin };
     let pieces = smooth_pieces(curve);
     let sides: Result<Vec<Curve>> = pieces.iter().map(|piece| plan.smooth(piece)).collect();
     let joined = plan.join(&pieces, sides?)?;
@@ -50,7 +51,7 @@ fn check_plane(curve: &Curve, normal: DVec3) -> Result<()> {
     Err(ValueFault::NotItsPlane { argument: "normal", by: out }.into())
 }
 
-/// How far the curve may leave the plane through its start with this unit normal; its whole size where that is not easily told.
+/// How far the curve may leave the plane through its start with this unit normal; its whole size where that is not known in closed form.
 pub(crate) fn height_over(curve: &Curve, normal: DVec3) -> f64 {
     let start = curve.start();
     let high = |p: DVec3| (p - start).dot(normal).abs();
@@ -85,13 +86,13 @@ pub(crate) fn smooth_pieces(curve: &Curve) -> Vec<Curve> {
 }
 
 /// What all pieces share.
-struct Plan {
+struct OffsetPlan {
     distance: f64,
     normal: DVec3,
     origin: Origin,
 }
 
-impl Plan {
+impl OffsetPlan {
     fn too_far(&self, range: LengthRange) -> Fault {
         ValueFault::LengthOutside { argument: "distance", found: self.distance, range }.into()
     }
@@ -107,7 +108,7 @@ impl Plan {
             Shape::Offset(inner) => {
                 let turned = inner.normal.dot(self.normal).signum();
                 let distance = inner.distance + turned * self.distance;
-                return Plan { distance, normal: inner.normal, origin: self.origin }.smooth(&inner.base);
+                return OffsetPlan { distance, normal: inner.normal, origin: self.origin }.smooth(&inner.base);
             }
             _ => {
                 self.check_radius(piece)?;

@@ -8,7 +8,8 @@ use crate::base::fault::Result;
 use crate::base::tolerance::{PARALLEL, Tolerance};
 use crate::geometry::construct::build;
 use crate::geometry::construct::build::{Ends, Spline};
-use crate::geometry::curves::curve::{Curve, Kind, Shape};
+use crate::geometry::curves::curve::{Curve, Shape};
+use crate::geometry::data::kind::Kind;
 
 impl Curve {
     /// Whether [`Curve::with_ends`] can build it anew: it is made from points and open.

@@ -8,7 +8,8 @@ use crate::base::fault::Result;
 use crate::base::origin::Origin;
 use crate::base::solve::{Row, cyclic, tridiagonal};
 use crate::geometry::construct::build::{all_different, direction, enough, finite_points};
-use crate::geometry::curves::curve::{Curve, Kind, Shape};
+use crate::geometry::curves::curve::{Curve, Shape};
+use crate::geometry::data::kind::Kind;
 use crate::geometry::shapes::nurbs::Nurbs;
 
 /// End condition of an interpolating spline.

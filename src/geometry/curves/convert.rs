@@ -1,15 +1,40 @@
-//! Curves as rational B-splines.
+//! Curves as rational B-splines, and under affine maps.
+
+use std::sync::Arc;
+
+use glam::DVec3;
 
 use crate::base::fault::Result;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::curves::curve::{Curve, Shape};
 use crate::geometry::data::fault::CurveFault;
-use crate::geometry::shapes::nurbs::Nurbs;
+use crate::geometry::data::kind::Kind;
+use crate::geometry::shapes::arc::EllipticArc;
+use crate::geometry::shapes::nurbs::{Nurbs, projected, weighted};
 
 /// Pieces of an approximation at most.
 const MOST_PIECES: usize = 1 << 16;
 
 impl Curve {
+    /// The image under an affine map, exactly, with its own parameter; `vector` maps differences of what `point` maps.
+    /// `None` for helices, offsets and composites.
+    pub fn mapped(&self, point: impl Fn(DVec3) -> DVec3, vector: impl Fn(DVec3) -> DVec3) -> Option<Self> {
+        let (shape, kind) = match self.shape() {
+            Shape::Line(a, b) => (Shape::Line(point(*a), point(*b)), self.kind()),
+            Shape::Arc(arc) => {
+                let image = EllipticArc::new(point(arc.center), vector(arc.u), vector(arc.v), arc.sweep);
+                let kind = if image.radius.is_some() { self.kind() } else { Kind::Ellipse };
+                (Shape::Arc(image), kind)
+            }
+            Shape::Nurbs(c) => {
+                let poles = c.poles.iter().map(|q| weighted(point(projected(*q)), q.w)).collect();
+                (Shape::Nurbs(Arc::new(Nurbs { poles, knots: c.knots.clone(), ..**c })), self.kind())
+            }
+            Shape::Helix(_) | Shape::Offset(_) | Shape::Composite(_) => return None,
+        };
+        Some(Self::new(shape, kind, self.origin()))
+    }
+
     /// The rational B-spline that is the curve itself, if there is one.
     pub fn exact_nurbs(&self) -> Option<Nurbs> {
         match self.shape() {

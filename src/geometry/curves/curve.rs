@@ -1,6 +1,5 @@
 //! One curve of any kind: what every caller above this floor works with.
 
-use crate::geometry::data::jet::Jet;
 use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
@@ -10,81 +9,16 @@ use crate::base::digest::{StableHash, StableHasher};
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::base::work;
-use crate::geometry::curves::arclength::{Lengths, lengths_of};
+use crate::geometry::curves::arclength::Lengths;
 use crate::geometry::curves::composite::Composite;
 use crate::geometry::curves::offset::Offset;
 use crate::geometry::curves::pieces::Pieces;
+use crate::geometry::data::jet::Jet;
+use crate::geometry::data::kind::Kind;
 use crate::geometry::data::motion::Motion;
 use crate::geometry::shapes::arc::EllipticArc;
 use crate::geometry::shapes::helix::Helix;
 use crate::geometry::shapes::nurbs::Nurbs;
-
-/// The word a curve was made with; what reports call its kind.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
-    /// Straight segment.
-    Line,
-    /// Straight segments in a row.
-    Polyline,
-    /// Part of a circle.
-    Arc,
-    /// Whole circle.
-    Circle,
-    /// Ellipse or a part of it.
-    Ellipse,
-    /// Conic section from its three control points and rho.
-    Conic,
-    /// Parabola.
-    Parabola,
-    /// Interpolating cubic spline.
-    Spline,
-    /// Bézier curve.
-    Bezier,
-    /// B-spline.
-    Bspline,
-    /// Rational B-spline.
-    Nurbs,
-    /// Helix.
-    Helix,
-    /// Offset of a plane curve.
-    Offset,
-    /// Several curves in a row.
-    Composite,
-    /// Line of constant u or v of a surface.
-    Iso,
-    /// Curve carried to a surface.
-    Project,
-    /// Curve in which surfaces meet.
-    Meet,
-    /// Curve through or near many points.
-    Fit,
-}
-
-impl Kind {
-    /// The word as scripts and reports have it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Line => "line",
-            Self::Polyline => "polyline",
-            Self::Arc => "arc",
-            Self::Circle => "circle",
-            Self::Ellipse => "ellipse",
-            Self::Conic => "conic",
-            Self::Parabola => "parabola",
-            Self::Spline => "spline",
-            Self::Bezier => "bezier",
-            Self::Bspline => "bspline",
-            Self::Nurbs => "nurbs",
-            Self::Helix => "helix",
-            Self::Offset => "offset",
-            Self::Composite => "composite",
-            Self::Iso => "iso",
-            Self::Project => "project",
-            Self::Meet => "meet",
-            Self::Fit => "fit",
-        }
-    }
-}
 
 /// The exact shape of a curve, with its own parameter.
 #[derive(Clone, Debug)]
@@ -121,7 +55,6 @@ struct Inner {
     pieces: OnceLock<Arc<Pieces>>,
 }
 
-crate::content_of_word!(Kind);
 crate::content!(Inner { shape, kind, through } but { origin, lengths, pieces });
 
 impl StableHash for Shape {
@@ -174,7 +107,7 @@ impl Curve {
         Self(Arc::new(Inner { shape, kind: *kind, origin, through: *through, lengths, pieces }))
     }
 
-    /// The same shape, told as made with another word.
+    /// The same shape, as if made with another word.
     pub(crate) fn of_kind(&self, kind: Kind) -> Self {
         Self::new(self.0.shape.clone(), kind, self.0.origin)
     }
@@ -288,90 +221,10 @@ impl Curve {
         tolerance.same_point(self.start(), self.end())
     }
 
-    /// Arc length, model units (relative error 1e-13).
-    pub fn length(&self) -> f64 {
-        match &self.0.shape {
-            Shape::Composite(c) => c.starts()[c.pieces.len()],
-            _ => match self.even_speed() {
-                Some(speed) => speed * (self.domain().1 - self.domain().0),
-                None => self.lengths().total(),
-            },
-        }
-    }
-
-    /// Arc length from the start to parameter `t`.
-    pub fn length_at(&self, t: f64) -> f64 {
-        match &self.0.shape {
-            Shape::Composite(c) => c.length_at(t),
-            _ => match self.even_speed() {
-                Some(speed) => speed * t.clamp(0.0, self.domain().1),
-                None => self.lengths().at(t),
-            },
-        }
-    }
-
-    /// Parameter at arc length `s` from the start; `s` outside 0…length gives the nearer end.
-    pub fn param_at_length(&self, s: f64) -> f64 {
-        match &self.0.shape {
-            Shape::Composite(c) => c.param_at_length(s),
-            _ => match self.even_speed() {
-                Some(speed) => even_param(s, speed, self.domain().1),
-                None => self.lengths().param(s),
-            },
-        }
-    }
-
-    /// Parameters at many arc lengths, appended to `out`; fastest when the lengths ascend.
-    pub fn params_at_lengths(&self, lengths: &[f64], out: &mut Vec<f64>) {
-        out.reserve(lengths.len());
-        match (&self.0.shape, self.even_speed()) {
-            (Shape::Composite(c), _) => out.extend(lengths.iter().map(|s| c.param_at_length(*s))),
-            (_, Some(speed)) => out.extend(lengths.iter().map(|s| even_param(*s, speed, self.domain().1))),
-            (_, None) => {
-                let (table, mut panel) = (self.lengths(), usize::MAX);
-                out.extend(lengths.iter().map(|s| table.param_near(*s, &mut panel)));
-            }
-        }
-    }
-
-    /// `n` equally spaced points along the curve, both ends included (a single one is the start).
-    pub fn points_along(&self, n: usize) -> Vec<DVec3> {
-        let (length, last) = (self.length(), n.saturating_sub(1).max(1));
-        let lengths: Vec<f64> = (0..n).map(|i| length * i as f64 / last as f64).collect();
-        let mut params = Vec::new();
-        self.params_at_lengths(&lengths, &mut params);
-        // The ends are the curve's own, whatever rounding made of the last length.
-        let ends = |i: usize, t: f64| if i + 1 == n && n > 1 { self.end() } else { self.point(t) };
-        params.iter().enumerate().map(|(i, t)| ends(i, *t)).collect()
-    }
-
-    /// Length per parameter where it is the same everywhere and the domain starts at 0.
-    fn even_speed(&self) -> Option<f64> {
-        match &self.0.shape {
-            Shape::Line(a, b) => Some(a.distance(*b)),
-            Shape::Arc(arc) => arc.radius,
-            Shape::Helix(helix) => Some(helix.speed()),
-            _ => None,
-        }
-    }
-
     /// The table of lengths, made on first use.
     pub(crate) fn lengths(&self) -> &Lengths {
-        let table = || match &self.0.shape {
-            Shape::Nurbs(c) if c.degree == 1 && c.polynomial => {
-                let mut done = 0.0;
-                let mut before = self.start();
-                Lengths::proportional(c.breaks().into_iter().map(|(t, _)| {
-                    let p = c.jet_in(c.span_before(t), t).p;
-                    done += p.distance(before);
-                    before = p;
-                    (t, done)
-                }))
-            }
-            _ => lengths_of(self, &self.knots()),
-        };
         // Made once for everyone, whoever comes first.
-        self.0.lengths.get_or_init(|| Arc::new(work::uncharged(table)))
+        self.0.lengths.get_or_init(|| Arc::new(work::uncharged(|| Lengths::of(self))))
     }
 
     /// Its smooth pieces with bounds, made on first use.
@@ -436,7 +289,7 @@ impl Curve {
         Self::new(shape, kind, self.origin())
     }
 
-    /// The curve carried by a motion, exactly.
+    /// The image under a motion, exactly.
     pub fn moved(&self, motion: &Motion) -> Self {
         let moved = self.with_shape(match &self.0.shape {
             Shape::Line(a, b) => Shape::Line(motion.point(*a), motion.point(*b)),
@@ -468,8 +321,4 @@ impl Curve {
 #[inline]
 fn line_jet(a: DVec3, b: DVec3, t: f64) -> Jet {
     Jet { p: if t == 1.0 { b } else { a + (b - a) * t }, d1: b - a, d2: DVec3::ZERO }
-}
-
-fn even_param(s: f64, speed: f64, last: f64) -> f64 {
-    if speed > 0.0 { (s / speed).clamp(0.0, last) } else { 0.0 }
 }

@@ -1,4 +1,4 @@
-//! Bounds of a curve's direction and curvature over a stretch, from control points and closed forms: nothing is sampled.
+//! Bounds of a curve's direction and curvature over an interval, from control points and closed forms: nothing is sampled.
 //!
 //! Both are geometric (derivatives by arc length), so a piece may be bounded in whatever parameter suits it.
 
@@ -13,24 +13,24 @@ use crate::geometry::shapes::arc::EllipticArc;
 use crate::geometry::shapes::nurbs::{Nurbs, projected};
 use crate::geometry::shapes::nurbs_edit::Bezier;
 
-/// What the unit tangent and the curvature vector of a stretch may be.
+/// What the unit tangent and the curvature vector of an interval may be.
 #[derive(Clone, Copy, Debug)]
 pub struct Enclosure {
     /// dC/ds.
     pub tangent: Interval3,
-    /// d²C/ds²; vast where there is a cusp.
+    /// d²C/ds²; unbounded where there is a cusp.
     pub bend: Interval3,
     /// Sum over the corners inside of how far each coordinate of the tangent jumps.
     pub jumps: DVec3,
 }
 
 impl Enclosure {
-    /// Of both stretches.
+    /// Of both intervals.
     pub fn union(self, other: &Self) -> Self {
         Self { tangent: self.tangent.union(other.tangent), bend: self.bend.union(other.bend), jumps: self.jumps + other.jumps }
     }
 
-    /// Of the stretch run backwards.
+    /// Of the interval run backwards.
     pub fn reversed(self) -> Self {
         Self { tangent: -self.tangent, ..self }
     }
@@ -101,7 +101,7 @@ fn turned(u: DVec3, v: DVec3, t0: f64, t1: f64) -> (Interval3, Interval3) {
     (forward * out + sides * along, forward * along + sides * out)
 }
 
-/// Pieces no wider than `least` are passed over beside wider ones: they are there because a stretch that was to end at a knot ends
+/// Pieces no wider than `least` are passed over beside wider ones: they are there because a part that was to end at a knot ends
 /// beside it, and differences of their control points over their width are nothing but rounding.
 fn of_nurbs(c: &Nurbs, least: f64) -> Enclosure {
     let mut whole: Option<(Enclosure, DVec3)> = None;

@@ -4,8 +4,9 @@ use glam::DVec3;
 
 use crate::base::fault::Result;
 use crate::base::tolerance::{CUSP, NUDGE, Tolerance};
-use crate::geometry::curves::curve::{Curve, Kind, Shape};
+use crate::geometry::curves::curve::{Curve, Shape};
 use crate::geometry::data::fault::CurveFault;
+use crate::geometry::data::kind::Kind;
 
 impl Curve {
     /// Directions (any length) in which the curve arrives at and leaves a parameter; at an end both are the same.

@@ -6,5 +6,6 @@ pub mod convert;
 pub mod curve;
 pub mod enclosure;
 pub mod kinks;
+pub mod length;
 pub mod offset;
 pub mod pieces;

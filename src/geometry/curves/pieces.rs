@@ -20,12 +20,12 @@ use crate::geometry::shapes::nurbs_edit::Bezier;
 const SPREAD: f64 = 0.3;
 /// A piece of a spline is halved at most this often; what is left then holds a cusp.
 const DEPTH: u32 = 24;
-/// Pieces of one polynomial or rational stretch at most: more say nothing that the bounds of fewer do not.
+/// Pieces of one polynomial or rational part at most: more say nothing that the bounds of fewer do not.
 const MOST: usize = 1 << 12;
 /// A piece shorter than this many roundings of its coordinates has no direction.
 const STILL: f64 = 8.0;
 
-/// A smooth stretch of a curve between corners: where a Newton iteration may wander.
+/// A smooth part of a curve between corners: where a Newton iteration may wander.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Section {
     /// Index of the piece of a composite curve, else 0.
@@ -97,14 +97,14 @@ impl Node {
     pub(crate) fn new(view: &View, t: (f64, f64), p: (DVec3, DVec3), rates: Rates) -> Self {
         let h = t.1 - t.0;
         let at = view.curve.jet(t.0 + 0.5 * h);
-        let enclosure = 0.5 * h * rates.turn;
+        let half_angle = 0.5 * h * rates.turn;
         let chord = p.0.distance(p.1);
         let (mut axis, mut cone) = (DVec3::ZERO, (1.0, 0.0));
         let mut bulge = rates.bend * h * h * 0.125;
-        if enclosure < std::f64::consts::FRAC_PI_2 {
+        if half_angle < std::f64::consts::FRAC_PI_2 {
             axis = at.d1.normalize_or_zero();
-            cone = if axis == DVec3::ZERO { (1.0, 0.0) } else { math::sin_cos(enclosure) };
-            // Tangents within the cone keep the curve within chord/2 · tan(enclosure) of the chord.
+            cone = if axis == DVec3::ZERO { (1.0, 0.0) } else { math::sin_cos(half_angle) };
+            // Tangents within the cone keep the curve within chord/2 · tan(half_angle) of the chord.
             if cone.1 > 0.0 {
                 bulge = bulge.min(0.5 * chord * cone.0 / cone.1);
             }
@@ -210,7 +210,7 @@ pub(crate) fn children(at: usize, low: usize, high: usize) -> (usize, usize, usi
     (at + 1, at + 2 * (middle - low), middle)
 }
 
-/// Stretches of a simple curve's section with their rates.
+/// Pieces of a simple curve's section with their rates.
 fn rated(curve: &Curve, range: (f64, f64)) -> Vec<(f64, f64, Rates)> {
     match curve.shape() {
         Shape::Line(..) | Shape::Composite(_) => vec![(range.0, range.1, Rates { turn: 0.0, bend: 0.0 })],

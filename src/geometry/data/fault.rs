@@ -176,7 +176,7 @@ impl Describe for CurveFault {
     fn describe(&self, say: &dyn Say) -> Report {
         let curve = |of: &Origin| say.quoted(*of, "this curve");
         match self {
-            Self::ZeroLength { of, length, tolerance } => zero_length(say, *of, (*length, *tolerance)),
+            Self::ZeroLength { of, length, tolerance } => zero_length(say, *of, *length, *tolerance),
             Self::TooFewPoints { what, argument, needed, given, .. } => {
                 let points = if *needed == 1 { "point" } else { "points" };
                 Report::new(format!("{what} needs at least {needed} {points}, got {given}"))
@@ -232,7 +232,7 @@ impl Describe for CurveFault {
     }
 }
 
-fn zero_length(say: &dyn Say, of: Origin, (length, tolerance): (f64, f64)) -> Report {
+fn zero_length(say: &dyn Say, of: Origin, length: f64, tolerance: f64) -> Report {
     let name = say.quoted(of, "this curve");
     if tolerance == 0.0 {
         return Report::new(format!("{name} has no length: it starts and ends at one point")).at(of, "nothing to draw");

@@ -60,18 +60,18 @@ impl Motion {
         Self { affine: DAffine3 { matrix3: matrix, translation }, scale: 1.0 / self.scale, mirrors: self.mirrors }
     }
 
-    /// The same where lengths are told in units of this size.
+    /// The same where lengths are given in units of this size.
     pub fn in_units(&self, size: f64) -> Self {
         let affine = DAffine3 { translation: self.affine.translation / size, ..self.affine };
         Self { affine, ..*self }
     }
 
-    /// A point carried.
+    /// The image of a point.
     pub fn point(&self, p: DVec3) -> DVec3 {
         self.affine.transform_point3(p)
     }
 
-    /// A derivative or direction carried (no translation).
+    /// The image of a derivative or direction (no translation).
     pub fn vector(&self, v: DVec3) -> DVec3 {
         self.affine.transform_vector3(v)
     }

@@ -1,4 +1,4 @@
-//! Nearest points, found by bounds: no stretch is left out that could hold a nearer one.
+//! Nearest points, found by bounds: no part is left out that could hold a nearer one.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -46,7 +46,7 @@ pub fn closest(curve: &Curve, p: DVec3) -> Closest {
         }
     }
     let mut search = Nearest { curve, pieces, p, rounding, best, left: MOST_PARTS };
-    search.walk(0, 0, pieces.pieces.len());
+    search.descend(0, 0, pieces.pieces.len());
     let (t, point, distance) = search.best;
     Closest { t, point, distance }
 }
@@ -74,14 +74,14 @@ impl Nearest<'_> {
         }
     }
 
-    fn walk(&mut self, at: usize, low: usize, high: usize) {
+    fn descend(&mut self, at: usize, low: usize, high: usize) {
         if !self.worth(distance_to_box(self.pieces.bounds(at), self.p)) {
             return;
         }
         if high - low > 1 {
             let (left, right, middle) = children(at, low, high);
-            self.walk(left, low, middle);
-            self.walk(right, middle, high);
+            self.descend(left, low, middle);
+            self.descend(right, middle, high);
             return;
         }
         let piece = &self.pieces.pieces[low];

@@ -41,14 +41,14 @@ impl Cubics {
         let mut n = [0.0; DEGREE + 1];
         n[0] = 1.0;
         for p in 1..=DEGREE {
-            let mut carried = 0.0;
+            let mut rest = 0.0;
             for r in 0..p {
                 let (low, high) = (knots[span + DEGREE + 1 + r - p], knots[span + DEGREE + 1 + r]);
                 let share = n[r] / (high - low);
-                n[r] = carried + (high - t) * share;
-                carried = (t - low) * share;
+                n[r] = rest + (high - t) * share;
+                rest = (t - low) * share;
             }
-            n[p] = carried;
+            n[p] = rest;
         }
         (span, n)
     }

@@ -6,11 +6,10 @@ use glam::{DAffine3, DVec3, DVec4};
 
 use crate::base::limits;
 use crate::base::tolerance::Tolerance;
+use crate::geometry::Curve;
 use crate::geometry::curves::composite::Composite;
 use crate::geometry::curves::curve::Shape;
-use crate::geometry::shapes::arc::EllipticArc;
 use crate::geometry::shapes::nurbs::projected;
-use crate::geometry::{Curve, Kind, Nurbs};
 use crate::io::cad::defect::{Defect, defect};
 
 /// Coordinates must leave room for what is computed from them.
@@ -64,28 +63,17 @@ pub fn weight(curve: &Curve) -> usize {
 
 /// The curve transformed by any affine map, exactly; an offset within the tolerance.
 pub fn transformed(curve: &Curve, m: &DAffine3, tolerance: &Tolerance) -> Result<Curve, Defect> {
-    let origin = curve.origin();
-    Ok(match curve.shape() {
-        Shape::Line(a, b) => Curve::new(Shape::Line(m.transform_point3(*a), m.transform_point3(*b)), curve.kind(), origin),
-        Shape::Arc(arc) => {
-            let (u, v) = (m.transform_vector3(arc.u), m.transform_vector3(arc.v));
-            let moved = EllipticArc::new(m.transform_point3(arc.center), u, v, arc.sweep);
-            let kind = if moved.radius.is_some() { curve.kind() } else { Kind::Ellipse };
-            Curve::new(Shape::Arc(moved), kind, origin)
-        }
-        Shape::Composite(c) => {
-            let pieces: Result<Vec<Curve>, Defect> = c.pieces.iter().map(|piece| transformed(piece, m, tolerance)).collect();
-            Curve::new(Shape::Composite(Arc::new(Composite::new(pieces?))), curve.kind(), origin)
-        }
-        Shape::Nurbs(c) => from_nurbs(c, m, curve),
-        Shape::Offset(_) | Shape::Helix(_) => from_nurbs(&curve.to_nurbs(tolerance)?, m, curve),
-    })
-}
-
-fn from_nurbs(c: &Nurbs, m: &DAffine3, like: &Curve) -> Curve {
-    let poles = c.poles.iter().map(|q| transformed_pole(*q, m)).collect();
-    let moved = Nurbs { poles, knots: c.knots.clone(), ..*c };
-    Curve::new(Shape::Nurbs(Arc::new(moved)), like.kind(), like.origin())
+    let image = |curve: &Curve| curve.mapped(|p| m.transform_point3(p), |v| m.transform_vector3(v));
+    if let Some(image) = image(curve) {
+        return Ok(image);
+    }
+    let of_shape = |shape| Curve::new(shape, curve.kind(), curve.origin());
+    if let Shape::Composite(c) = curve.shape() {
+        let pieces: Result<Vec<Curve>, Defect> = c.pieces.iter().map(|piece| transformed(piece, m, tolerance)).collect();
+        return Ok(of_shape(Shape::Composite(Arc::new(Composite::new(pieces?)))));
+    }
+    let spline = of_shape(Shape::Nurbs(Arc::new(curve.to_nurbs(tolerance)?)));
+    Ok(image(&spline).unwrap_or(spline))
 }
 
 /// A homogeneous control point transformed.

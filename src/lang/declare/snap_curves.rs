@@ -48,7 +48,7 @@ pub(crate) fn move_ends(
         }
     }
     let mut sink: Vec<Fault> = Vec::new();
-    let moves = snap(&ends, points, (distance, asked), &tolerance, &mut sink)?;
+    let moves = snap(&ends, points, distance, asked, &tolerance, &mut sink)?;
     cx.say_all(&sink);
     let mut places: Vec<DVec3> = ends.iter().map(|e| e.end.at).collect();
     let mut moved = vec![false; owners.len()];

@@ -153,12 +153,12 @@ pub fn places(input: &Input, face: &Face, side: usize, lengths: &[f64]) -> Vec<(
 fn along_border(surface: &Surface, side: usize, total: f64, lengths: &[f64]) -> Vec<(f64, f64)> {
     match (surface.side(side), surface.border_line(side)) {
         (Side::Chain { from, to, .. }, _) => {
-            let quick = surface.power_form();
-            let place = |s: &f64| surface.border_place_by(quick.as_ref(), side, from + (to - from) * (s / total)).unwrap_or_default();
+            let prepared = surface.prepared();
+            let place = |s: &f64| prepared.evaluator().border_place(side, from + (to - from) * (s / total)).unwrap_or_default();
             lengths.iter().map(place).collect()
         }
         (_, Some((from, to))) => {
-            let trace = Trace::by((surface, surface.power_form()), from, to);
+            let trace = Trace::of_prepared(surface.prepared(), from, to);
             lengths.iter().map(|s| trace.uv(trace.at_length(s / total * trace.length()))).collect()
         }
         _ => vec![(0.0, 0.0); lengths.len()],

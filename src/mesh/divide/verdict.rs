@@ -229,7 +229,7 @@ fn turns_of_grid(surface: &Surface, grid: &Grid) -> [f64; 3] {
             .map(|n| {
                 let i = (n / ku).min(nu - 1);
                 let (u, v) = inside(grid, (i, j), ((n - i * ku) as f64 / ku as f64, y as f64 / kv as f64));
-                surface.normal_lean(u, v, (lean(n == nu * ku), lean(j + 1 == nv && y == kv)))
+                surface.normal_one_sided(u, v, (lean(n == nu * ku), lean(j + 1 == nv && y == kv)))
             })
             .collect()
     };

@@ -17,7 +17,7 @@ use crate::mesh::data::face_geometry::FaceNodes;
 use crate::mesh::data::face_mesh::FaceMesh;
 use crate::mesh::data::mesh::Mesh;
 use crate::mesh::request::input::Input;
-use crate::surface::{Domain, Side};
+use crate::surface::{Domain, PreparedSurface, Side};
 
 /// Largest distance of a glued border node from its place on a face, in glue distances.
 const MAX_GLUED_DISTANCE: f64 = 8.0;
@@ -220,9 +220,9 @@ pub(crate) fn misplaced(input: &Input, face: &Face, face_mesh: &FaceMesh, mesh: 
     let near = MAX_GLUED_DISTANCE * face.near.max(input.tolerance.point);
     // Under limits the power form was computed for the bounds.
     let has_power_form = face.free && (input.plan.settings.chord_error.is_some() || input.plan.settings.angle_error.is_some());
-    let quick = if has_power_form { surface.power_form() } else { None };
+    let prepared = if has_power_form { surface.prepared() } else { PreparedSurface::plain(surface) };
     let off = |(n, (u, v)): (u32, (f64, f64))| {
-        let off = surface.point_by(quick.as_ref(), u, v).distance(mesh.nodes[n as usize]);
+        let off = prepared.evaluator().point(u, v).distance(mesh.nodes[n as usize]);
         (off > near || off.is_nan()).then_some((n, off))
     };
     let inner = |all: usize| (0..all).step_by(all.div_ceil(MAX_PROBES).max(1));

@@ -93,11 +93,11 @@ impl Surface {
         let trimmed = self.parts().trim.is_some();
         match self.to_net(tolerance)? {
             Some(form) if !trimmed => {
-                let told = |off, proved| DeviationFault::AsNet { net: origin, surface: self.origin(), off, proved }.into();
+                let fault = |off, proved| DeviationFault::AsNet { net: origin, surface: self.origin(), off, proved }.into();
                 let note = match form.off {
                     Off::Exact => None,
-                    Off::Bounded(off) => Some(told(off, true)),
-                    Off::Sampled(off) => Some(told(off, false)),
+                    Off::Bounded(off) => Some(fault(off, true)),
+                    Off::Sampled(off) => Some(fault(off, false)),
                 };
                 Ok((form.net.surface(SurfaceKind::Nurbs, origin, tolerance), note))
             }
@@ -182,7 +182,7 @@ impl Surface {
     }
 }
 
-/// The net of a profile that is carried straight, about an axis, or without a turn, where its own B-spline form is exact.
+/// The net of a profile that is moved straight, about an axis, or without a turn, where its own B-spline form is exact.
 fn exact(shape: &Shape) -> Option<NurbsSurface> {
     match shape {
         Shape::Sweep(sweep) => {

@@ -89,10 +89,10 @@ impl Surface {
                 };
                 let profile = between(chain, map.value(from), map.value(to), tolerance).ok()?.to_curve().ok()?;
                 let (form, reference) = match sweep.path() {
-                    Path::Straight { by } => carried(&profile, by),
+                    Path::Straight { by } => extruded(&profile, by),
                     Path::Turn { about, axis, angle } => turned(&profile, Axis { about, direction: axis * angle.signum() }, tolerance),
                 }?;
-                // In the middle of the stretch, away from poles.
+                // In the middle of the interval, away from poles.
                 let jet = self.jet(0.5, 0.5 * (v.0 + v.1));
                 let along = form.normal_is(jet.p, jet.du.cross(jet.dv));
                 Some(Elementary { form, reference, along })
@@ -121,8 +121,8 @@ fn round(profile: &Curve) -> Option<(EllipticArc, f64)> {
     arc.radius.map(|radius| (*arc, radius))
 }
 
-/// A profile carried straight, with the direction from the axis to its start.
-fn carried(profile: &Curve, by: DVec3) -> Option<(Form, DVec3)> {
+/// An extruded profile, with the direction from the axis to its start.
+fn extruded(profile: &Curve, by: DVec3) -> Option<(Form, DVec3)> {
     let way = by.normalize_or_zero();
     if let CurveShape::Line(a, b) = profile.shape() {
         return Some((Form::Plane { at: *a, normal: by.cross(*b - *a).normalize_or_zero() }, way));

@@ -1,6 +1,6 @@
 //! Lines of constant u or v that have no exact form, as cubics within a tolerance.
 //!
-//! Each cubic has the line's ends and derivatives. What it is off is bounded, not sampled: about the middle of a stretch
+//! Each cubic has the line's ends and derivatives. What it is off is bounded, not sampled: about the middle of an interval
 //! of half width h the difference e is at most |e| + h |e′| there plus ½ h² times the range of e″, which is the surface's
 //! range of second derivatives less the cubic's (`docs/notes/bounds.md`).
 
@@ -23,11 +23,11 @@ use crate::surface::data::one_sided::OneSided;
 const SHARE: f64 = 0.25;
 /// Cubics at most.
 const MOST_PIECES: usize = 1 << 14;
-/// Stretches in which one cubic is looked at, at most.
-const STRETCHES: usize = 64;
+/// Intervals in which one cubic is looked at, at most.
+const INTERVALS: usize = 64;
 
 /// A line with what it is fitted to.
-struct Fit<'a> {
+struct LineFit<'a> {
     surface: &'a Surface,
     line: IsoLine,
     allowed: f64,
@@ -37,7 +37,7 @@ struct Fit<'a> {
 ///
 /// Fails with E401 where the line is one point, E413 where nothing is known of its bend (a cusp below).
 pub(crate) fn fitted(surface: &Surface, line: IsoLine, origin: Origin, tolerance: &Tolerance) -> Result<Curve> {
-    let fit = Fit { surface, line, allowed: SHARE * tolerance.point };
+    let fit = LineFit { surface, line, allowed: SHARE * tolerance.point };
     let end = if surface.domain() == Domain::Triangle { 1.0 - line.value() } else { 1.0 };
     let (us, vs) = surface.breaks();
     let inner = if matches!(line, IsoLine::U(_)) { vs } else { us };
@@ -70,17 +70,17 @@ pub(crate) fn fitted(surface: &Surface, line: IsoLine, origin: Origin, tolerance
     if length <= tolerance.point { Err(zero(length).into()) } else { Ok(curve) }
 }
 
-impl Fit<'_> {
+impl LineFit<'_> {
     /// Point and derivatives of the line, from the given side.
-    fn jet(&self, t: f64, lean: OneSided) -> Jet {
+    fn jet(&self, t: f64, side: OneSided) -> Jet {
         let (u, v) = self.line.at(t);
         match self.line {
             IsoLine::U(_) => {
-                let jet = self.surface.jet_one_sided(u, v, (OneSided::After, lean));
+                let jet = self.surface.jet_one_sided(u, v, (OneSided::After, side));
                 Jet { p: jet.p, d1: jet.dv, d2: jet.dvv }
             }
             IsoLine::V(_) => {
-                let jet = self.surface.jet_one_sided(u, v, (lean, OneSided::After));
+                let jet = self.surface.jet_one_sided(u, v, (side, OneSided::After));
                 Jet { p: jet.p, d1: jet.du, d2: jet.duu }
             }
         }
@@ -109,7 +109,7 @@ impl Fit<'_> {
                 continue;
             }
             seen += 1;
-            if off > self.allowed || seen + open.len() > STRETCHES {
+            if off > self.allowed || seen + open.len() > INTERVALS {
                 return false;
             }
             open.push((middle, b));

@@ -88,12 +88,12 @@ impl Surface {
     pub fn net_curves(&self) -> Vec<NetCurve> {
         let Some(blend) = self.blend() else { return Vec::new() };
         let (u, v) = blend.axes();
-        let lean = (OneSided::After, OneSided::After);
+        let side = (OneSided::After, OneSided::After);
         let place = |k: usize| k as f64 / PLACES as f64;
         let row = |rail: &Rail, at: f64, along_u: bool| {
             let chain = rail.chain();
             let origin = chain.map_or(self.origin(), |chain| chain.origin());
-            let jet = |x: f64| if along_u { blend.jet(x, at, lean) } else { blend.jet(at, x, lean) };
+            let jet = |x: f64| if along_u { blend.jet(x, at, side) } else { blend.jet(at, x, side) };
             let mut breaks = Vec::new();
             rail.breaks(&mut breaks);
             let inner = |x: &f64| *x > NUDGE && *x < 1.0 - NUDGE;
@@ -114,7 +114,7 @@ impl Surface {
         let once = |rails: usize, closed: bool| if closed && rails > 1 { rails - 1 } else { rails };
         let (n, m) = (once(blend.along_v().len(), closed.0), once(blend.along_u().len(), closed.1));
         let mut all: Vec<NetCurve> = blend.along_v().iter().zip(&u.nodes).take(n).map(|(rail, x)| row(rail, *x, false)).collect();
-        scales(blend, &mut all, (m, closed.0), &|j| {
+        scales(blend, &mut all, m, closed.0, &|j| {
             blend.along_u()[j].chain().is_some_and(|c| self.chains().iter().any(|g| g.origin() == c.origin()))
         });
         all.extend(blend.along_u().iter().zip(&v.nodes).take(m).map(|(rail, y)| row(rail, *y, true)));
@@ -151,12 +151,12 @@ impl Surface {
 }
 
 /// Scales of the stations between those given: of their meetings with the guides against those of the sections beside them.
-fn scales(blend: &Blend, stations: &mut [NetCurve], (guides, round): (usize, bool), is_guide: &dyn Fn(usize) -> bool) {
+fn scales(blend: &Blend, stations: &mut [NetCurve], guides: usize, round: bool, is_guide: &dyn Fn(usize) -> bool) {
     let anchors: Vec<usize> = (0..guides).filter(|j| is_guide(*j)).collect();
     if anchors.is_empty() || stations.iter().all(|s| s.given) {
         return;
     }
-    let enclosure = |i: usize| {
+    let mean_radius = |i: usize| {
         let points: Vec<DVec3> = anchors.iter().map(|j| blend.corner(i, *j)).collect();
         let n = points.len() as f64;
         let middle = points.iter().sum::<DVec3>() / n;
@@ -167,7 +167,7 @@ fn scales(blend: &Blend, stations: &mut [NetCurve], (guides, round): (usize, boo
         // Where the sections go round, the first one comes again after the last.
         let before = given.iter().rev().find(|k| **k < i).or(given.last().filter(|_| round));
         let after = given.iter().find(|k| **k > i).or(given.first().filter(|_| round));
-        let scale = |k: &usize| if anchors.len() == 1 || enclosure(*k) == 0.0 { 1.0 } else { enclosure(i) / enclosure(*k) };
+        let scale = |k: &usize| if anchors.len() == 1 || mean_radius(*k) == 0.0 { 1.0 } else { mean_radius(i) / mean_radius(*k) };
         let off = |x: f64| if x > 1.0 { x } else { 1.0 / x };
         let both = before.into_iter().chain(after).map(scale);
         station.scale = both.max_by(|a, b| off(*a).total_cmp(&off(*b)));

@@ -83,7 +83,7 @@ pub fn validate(surface: &Surface, tolerance: &Tolerance) -> Vec<Fault> {
 }
 
 impl Surface {
-    /// Where it folds over, with the turn of its normal there, or else where it has none, as `review` finds them.
+    /// Where it folds over, with the turn of its normal there, or else where it has none, as the report finds them.
     pub fn fold(&self, tolerance: &Tolerance) -> Option<(DVec3, Option<f64>)> {
         let found = validate(self, tolerance);
         let place = |fault: &Fault| match fault.of()? {

@@ -25,7 +25,7 @@ use crate::surface::data::kind::SurfaceKind;
 use crate::surface::data::one_sided::OneSided;
 use crate::surface::rails::rail::Rail;
 use crate::surface::shapes::blend::Blend;
-use crate::surface::shapes::weights::{Axis, Rule};
+use crate::surface::shapes::weights::{BlendAxis, Rule};
 
 /// A complete net of curves in common parameters.
 #[derive(Clone, Debug)]
@@ -74,8 +74,8 @@ pub(crate) fn blended(net: CurveNet, named: Named, straight: bool, tolerance: &T
         (_, true) => Rule::Periodic,
         _ => Rule::Spline,
     };
-    let u = Axis::new(nodes.0, if along_v.is_empty() { Rule::Lagrange } else { rule(closed.0) });
-    let blend = Blend::new(u, Axis::new(nodes.1, rule(closed.1)), along_v, along_u);
+    let u = BlendAxis::new(nodes.0, if along_v.is_empty() { Rule::Lagrange } else { rule(closed.0) });
+    let blend = Blend::new(u, BlendAxis::new(nodes.1, rule(closed.1)), along_v, along_u);
     let mut notes = Vec::new();
     let made = Made { origin: named.origin, kind: named.kind, flow: named.flow, closed, chains: named.chains };
     (finish(blend, made, tolerance, &mut notes), notes)
@@ -108,13 +108,13 @@ impl Surface {
                 }
             }
         }
-        let lean = (OneSided::After, OneSided::After);
+        let side = (OneSided::After, OneSided::After);
         for x in (0..=COMPARED).map(|k| k as f64 / COMPARED as f64) {
             for (rail, &y) in blend.along_u().iter().zip(&v.nodes) {
-                check.residual = check.residual.max(blend.jet(x, y, lean).p.distance(rail.point(x)));
+                check.residual = check.residual.max(blend.jet(x, y, side).p.distance(rail.point(x)));
             }
             for (rail, &y) in blend.along_v().iter().zip(&u.nodes) {
-                check.residual = check.residual.max(blend.jet(y, x, lean).p.distance(rail.point(x)));
+                check.residual = check.residual.max(blend.jet(y, x, side).p.distance(rail.point(x)));
             }
             // Off the nodes, where no curve decides.
             let inner = (x * (1.0 - NUDGE)).max(NUDGE);
@@ -128,10 +128,10 @@ impl Surface {
                 let chained = || rails.iter().filter(|rail| rail.chain().is_some());
                 let seam = (closed && !chained().any(corner)).then_some((1.0, 0.0));
                 for (a, b) in smooth.map(|x| (*x, *x)).chain(seam) {
-                    let normal = |at: f64, lean: OneSided| {
+                    let normal = |at: f64, side: OneSided| {
                         unit_normal(&match across_u {
-                            true => blend.jet(at, inner, (lean, OneSided::After)),
-                            false => blend.jet(inner, at, (OneSided::After, lean)),
+                            true => blend.jet(at, inner, (side, OneSided::After)),
+                            false => blend.jet(inner, at, (OneSided::After, side)),
                         })
                     };
                     if let (Some(before), Some(after)) = (normal(a, OneSided::Before), normal(b, OneSided::After)) {

@@ -1,6 +1,7 @@
 //! Surfaces blended from curves: Coons and Gordon surfaces, ruled ones, plane faces, skins through sections.
 
 pub mod coons;
+pub(crate) mod family;
 pub mod gordon;
 pub mod plane_face;
 pub mod ruled;

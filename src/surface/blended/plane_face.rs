@@ -21,7 +21,7 @@ use crate::surface::rails::reparam::Map;
 use crate::surface::rails::side::{Border, Side};
 use crate::surface::shapes::blend::Blend;
 use crate::surface::shapes::trilateral::Trilateral;
-use crate::surface::shapes::weights::{Axis, Rule};
+use crate::surface::shapes::weights::{BlendAxis, Rule};
 
 /// The flat face inside curves that close, in any order and direction; the first curve runs along u.
 ///
@@ -66,8 +66,8 @@ fn rail((chain, against): &Step, backwards: bool) -> Rail {
     Rail::new(chain.clone(), if *against == backwards { Map::identity() } else { Map::reverse() })
 }
 
-fn linear() -> Axis {
-    Axis::new(vec![0.0, 1.0], Rule::Lagrange)
+fn linear() -> BlendAxis {
+    BlendAxis::new(vec![0.0, 1.0], Rule::Lagrange)
 }
 
 fn blended(mut blend: Blend, poles: bool, origin: Origin, tolerance: &Tolerance, notes: &mut Vec<Fault>) -> Surface {

@@ -15,7 +15,7 @@ use crate::surface::rails::reparam::Map;
 use crate::surface::rails::ring::Ring;
 use crate::surface::rails::side::{Border, Side};
 use crate::surface::shapes::blend::Blend;
-use crate::surface::shapes::weights::{Axis, Rule};
+use crate::surface::shapes::weights::{BlendAxis, Rule};
 
 /// The ruled surface S(u, v) = (1 − v) a(u) + v b(u), u the arc-length fraction of both.
 ///
@@ -28,7 +28,7 @@ pub fn ruled(a: &Chain, b: &Chain, origin: Origin, tolerance: &Tolerance) -> Res
         if closed { Ring::of(a).runs_against(&Ring::of(b)) == Some(true) } else { apart(b.end(), b.start()) < apart(b.start(), b.end()) };
     let other = Rail::new(b.clone(), if reversed { Map::reverse() } else { Map::identity() });
     let rails = vec![Rail::new(a.clone(), Map::identity()), other];
-    let axis = || Axis::new(vec![0.0, 1.0], Rule::Lagrange);
+    let axis = || BlendAxis::new(vec![0.0, 1.0], Rule::Lagrange);
     let mut blend = Blend::new(axis(), axis(), Vec::new(), rails);
     let mut notes = Vec::new();
     let kinks = set_kinks(&mut blend, origin, tolerance, &mut notes);

@@ -8,7 +8,7 @@ use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::network::Chain;
 use crate::network::fault::NetFault;
-use crate::surface::blended::coons::evenly;
+use crate::surface::blended::family::evenly;
 use crate::surface::blended::gordon::{CurveNet, Named, blended};
 use crate::surface::blended::skin_align::{Read, Section, aligned, distances, runs_back};
 use crate::surface::blended::skin_ends::{Leaving, Spanned, ended};
@@ -135,7 +135,7 @@ fn turned_back(surface: &Surface) -> Option<Fault> {
     const PLACES: usize = 8;
     let (_, vs) = surface.kinks();
     let turn = |v: f64, u: f64| {
-        let [a, b] = [OneSided::Before, OneSided::After].map(|lean| surface.jet_one_sided(u, v, (OneSided::After, lean)).dv);
+        let [a, b] = [OneSided::Before, OneSided::After].map(|side| surface.jet_one_sided(u, v, (OneSided::After, side)).dv);
         math::angle_between(a, b)
     };
     vs.iter().find_map(|&v| {

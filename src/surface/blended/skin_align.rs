@@ -14,7 +14,7 @@ use crate::surface::rails::ring::{PLACES, Ring};
 
 /// Starts tried along a closed section before the best one is made better.
 const STARTS: usize = 64;
-/// Stretches over which squared distances are integrated, beside those between corners.
+/// Intervals over which squared distances are integrated, beside those between corners.
 const PANELS: usize = 16;
 /// Points of the rule for each of them.
 const ORDER: usize = 3;
@@ -32,7 +32,7 @@ impl Read {
     /// At a share of its length.
     pub fn point(&self, x: f64) -> DVec3 {
         match self {
-            Self::Curve(chain, turned) => read((chain, 0.0, *turned), x),
+            Self::Curve(chain, turned) => read(chain, 0.0, *turned, x),
             Self::Point(p) => *p,
         }
     }
@@ -56,7 +56,7 @@ pub fn aligned(sections: &[Section], round: bool, tolerance: &Tolerance) -> Resu
             (Section::Point(p), _) => Read::Point(*p),
             (Section::Curve(chain), None) => Read::Curve(chain.clone(), false),
             (Section::Curve(chain), Some(before)) if round => nearest_start(before, chain, tolerance)?,
-            (Section::Curve(chain), Some(before)) => Read::Curve(chain.clone(), nearer_backwards(before, chain)),
+            (Section::Curve(chain), Some(before)) => Read::Curve(chain.clone(), nearer_backwards(before.0, before.1, chain)),
         };
         all.push(next);
     }
@@ -66,7 +66,7 @@ pub fn aligned(sections: &[Section], round: bool, tolerance: &Tolerance) -> Resu
 /// Whether the last of some open sections runs against the first one.
 pub fn runs_back(aligned: &[Read]) -> bool {
     let [Read::Curve(first, turned), .., Read::Curve(last, before)] = aligned else { return false };
-    nearer_backwards((last, *before), first) != *turned
+    nearer_backwards(last, *before, first) != *turned
 }
 
 /// v of the sections: sums of their mean distances, from 0 to 1; and their whole, model units. `closed`: the last one is joined to the
@@ -87,23 +87,23 @@ pub fn distances(aligned: &[Read], closed: bool, round: bool) -> (Vec<f64>, f64)
 }
 
 /// A section: `turn` of its length later, backwards or not.
-fn read((chain, turn, turned): (&Chain, f64, bool), x: f64) -> DVec3 {
+fn read(chain: &Chain, turn: f64, turned: bool, x: f64) -> DVec3 {
     let x = if turned { 1.0 - x } else { x };
     let f = x + turn;
     chain.point(if f > 1.0 { f - 1.0 } else { f })
 }
 
 /// Whether an open section comes nearer to the one before when it is read backwards.
-fn nearer_backwards((before, back): (&Chain, bool), chain: &Chain) -> bool {
+fn nearer_backwards(before: &Chain, back: bool, chain: &Chain) -> bool {
     let at = |k: usize| k as f64 / PLACES as f64;
     let apart = |turned: bool| -> f64 {
-        (0..=PLACES).map(|k| read((before, 0.0, back), at(k)).distance_squared(read((chain, 0.0, turned), at(k)))).sum()
+        (0..=PLACES).map(|k| read(before, 0.0, back, at(k)).distance_squared(read(chain, 0.0, turned, at(k)))).sum()
     };
     apart(true) < apart(false)
 }
 
 /// A closed section and the one that is to follow it.
-struct Pair<'a> {
+struct SectionPair<'a> {
     before: (&'a Chain, bool),
     section: &'a Chain,
     /// Whether the second is read backwards.
@@ -113,21 +113,21 @@ struct Pair<'a> {
     centers: (DVec3, DVec3),
 }
 
-impl<'a> Pair<'a> {
+impl<'a> SectionPair<'a> {
     /// `a` and `b` are the rings of both, the second one as it is drawn.
-    fn new(before: (&'a Chain, bool), section: &'a Chain, turned: bool, (a, b): (Ring, Ring)) -> Self {
+    fn new(before: (&'a Chain, bool), section: &'a Chain, turned: bool, a: Ring, b: Ring) -> Self {
         let b = if turned { b.turned() } else { b };
         Self { before, section, turned, turn: a.rotation_to(&b), centers: (a.center, b.center) }
     }
 
     /// Where the first wants the second to be at a share of its length.
     fn wanted(&self, x: f64) -> DVec3 {
-        self.centers.1 + self.turn * (read((self.before.0, 0.0, self.before.1), x) - self.centers.0)
+        self.centers.1 + self.turn * (read(self.before.0, 0.0, self.before.1, x) - self.centers.0)
     }
 
     /// Mean of squared distances of the second, read from a start, from places where it is wanted.
     fn apart(&self, wanted: &[DVec3], start: f64) -> f64 {
-        let at = |k: usize| read((self.section, start, self.turned), k as f64 / wanted.len() as f64);
+        let at = |k: usize| read(self.section, start, self.turned, k as f64 / wanted.len() as f64);
         wanted.iter().enumerate().map(|(k, p)| p.distance_squared(at(k))).sum::<f64>() / wanted.len() as f64
     }
 
@@ -165,9 +165,9 @@ fn nearest_start(before: (&Chain, bool), section: &Chain, tolerance: &Tolerance)
     let (ring, own) = (Ring::of(before.0), Ring::of(section));
     let ring = if before.1 { ring.turned() } else { ring };
     let against = ring.runs_against(&own);
-    let mut best: Option<(f64, f64, Pair)> = None;
+    let mut best: Option<(f64, f64, SectionPair)> = None;
     for turned in against.map_or(vec![false, true], |turned| vec![turned]) {
-        let pair = Pair::new(before, section, turned, (ring, own));
+        let pair = SectionPair::new(before, section, turned, ring, own);
         let wanted: Vec<DVec3> = (0..PLACES).map(|k| pair.wanted(k as f64 / PLACES as f64)).collect();
         let off = starts.iter().map(|start| (pair.apart(&wanted, *start), *start));
         let nearer = |a: (f64, f64), b: (f64, f64)| if b.0 < a.0 * (1.0 - tolerance.parameter) { b } else { a };

@@ -9,18 +9,18 @@ use glam::DVec3;
 use crate::base::job;
 use crate::base::solve::dense;
 use crate::base::tolerance::Tolerance;
-use crate::surface::blended::coons::evenly;
+use crate::surface::blended::family::evenly;
 use crate::surface::blended::skin_ends::Spanned;
 use crate::surface::data::one_sided::OneSided;
 use crate::surface::rails::mixed::{Mixed, Part};
 use crate::surface::rails::rail::Rail;
-use crate::surface::shapes::weights::{Axis, Rule};
+use crate::surface::shapes::weights::{BlendAxis, Rule};
 
 /// Places along each section at which a fit is measured.
 const PLACES: usize = 65;
 
 /// The sections as points at their parameters across.
-struct Fit<'a> {
+struct SectionFit<'a> {
     nodes: &'a [f64],
     points: Vec<Vec<DVec3>>,
     closed: bool,
@@ -31,7 +31,7 @@ struct Fit<'a> {
 /// In a closed direction the last of `nodes` is 1 and has no curve, given and returned.
 pub fn fitted(nodes: &[f64], rails: &[Rail], closed: bool, allowed: f64, tolerance: &Tolerance) -> Spanned {
     let us = evenly(PLACES);
-    let fit = Fit { nodes, points: rails.iter().map(|rail| rail.points(&us)).collect(), closed };
+    let fit = SectionFit { nodes, points: rails.iter().map(|rail| rail.points(&us)).collect(), closed };
     let chosen = fit.few(allowed);
     let shares = fit.shares(&chosen).unwrap_or_default();
     let mut all: Vec<f64> = chosen.iter().map(|k| nodes[*k]).collect();
@@ -49,7 +49,7 @@ pub fn fitted(nodes: &[f64], rails: &[Rail], closed: bool, allowed: f64, toleran
     Spanned { nodes: all, rails: curves }
 }
 
-impl Fit<'_> {
+impl SectionFit<'_> {
     /// Sections at which the fit has its curves.
     fn few(&self, allowed: f64) -> Vec<usize> {
         let n = self.points.len();
@@ -101,7 +101,7 @@ impl Fit<'_> {
         if self.closed {
             nodes.push(1.0);
         }
-        let axis = Axis::new(nodes, if self.closed { Rule::Periodic } else { Rule::Spline });
+        let axis = BlendAxis::new(nodes, if self.closed { Rule::Periodic } else { Rule::Spline });
         let m = chosen.len();
         let row = |k: usize| {
             let weights = axis.weights(self.nodes[k], OneSided::After);
@@ -154,7 +154,7 @@ mod tests {
         let place = |v: f64, u: f64| DVec3::new(u, v, v * v * (1.0 - v) * (1.0 + u));
         let us = evenly(PLACES);
         let points = nodes.iter().map(|v| us.iter().map(|u| place(*v, *u)).collect()).collect();
-        let fit = Fit { nodes: &nodes, points, closed: false };
+        let fit = SectionFit { nodes: &nodes, points, closed: false };
         let chosen = fit.few(1e-12);
         assert_eq!(chosen.len(), 4, "{chosen:?}");
         assert!(fit.off(&chosen).iter().all(|off| *off < 1e-12));

@@ -72,10 +72,10 @@ pub(crate) fn extremes(surface: &Surface, samples: &[Sample]) -> Vec<Sample> {
 pub(crate) const MOST: usize = 20_000;
 
 /// A rectangle of (u, v): its ends in u and in v.
-pub(crate) type Cell = ((f64, f64), (f64, f64));
+pub(crate) type UvBox = ((f64, f64), (f64, f64));
 
 /// Both halves of a rectangle, along u or along v.
-pub(crate) fn halves((u, v): Cell, along_u: bool) -> [Cell; 2] {
+pub(crate) fn halves((u, v): UvBox, along_u: bool) -> [UvBox; 2] {
     let (mu, mv) = (0.5 * (u.0 + u.1), 0.5 * (v.0 + v.1));
     if along_u { [((u.0, mu), v), ((mu, u.1), v)] } else { [(u, (v.0, mv)), (u, (mv, v.1))] }
 }

@@ -8,13 +8,13 @@ use crate::network::Chain;
 use crate::surface::closest::samples::stations;
 use crate::surface::data::breaks::chain_breaks;
 
-/// Stretches looked at before what is left is taken by its bound.
+/// Pieces looked at before what is left is taken by its bound.
 const MOST: usize = 20_000;
 
 /// The smallest box along the axes that holds a curve: no point of it stands out by more than [`BOX`] of the diagonal.
 ///
 /// Turning points between samples are found by bisection of the slope; bounds of the derivatives over ever shorter
-/// stretches then show that nothing lies further out, or find what does.
+/// pieces then show that nothing lies further out, or find what does.
 pub fn curve_bbox(chain: &Chain) -> Box3 {
     curve_bbox_between(chain, 0.0, 1.0)
 }

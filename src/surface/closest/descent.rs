@@ -105,12 +105,12 @@ fn step(here: &Local, free: [bool; 2], shift: f64) -> [f64; 2] {
     if free[0] && free[1] {
         // Along each principal direction of the curvature by its size: where it is negative, Newton's step would climb.
         let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
-        let enclosure = (half * half + xy * xy).sqrt();
+        let half_apart = (half * half + xy * xy).sqrt();
         // The direction of the larger eigenvalue, from whichever of its two forms does not cancel.
-        let (a, b) = if half >= 0.0 { (half + enclosure, xy) } else { (xy, enclosure - half) };
+        let (a, b) = if half >= 0.0 { (half + half_apart, xy) } else { (xy, half_apart - half) };
         let norm = (a * a + b * b).sqrt();
         let (a, b) = if norm > 0.0 { (a / norm, b / norm) } else { (1.0, 0.0) };
-        let (high, low) = ((mean + enclosure).abs(), (mean - enclosure).abs());
+        let (high, low) = ((mean + half_apart).abs(), (mean - half_apart).abs());
         let least = LEAST_CURVATURE * high.max(low);
         let along = (a * gx + b * gy) / (high.max(least) + shift);
         let across = (a * gy - b * gx) / (low.max(least) + shift);

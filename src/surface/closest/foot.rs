@@ -5,7 +5,6 @@ use glam::{DVec2, DVec3};
 use crate::base::job;
 use crate::base::tolerance::EPSILON;
 use crate::surface::core::evaluator::Evaluator;
-use crate::surface::core::power_form::PowerForm;
 use crate::surface::core::surface::Surface;
 use crate::surface::data::jet::Jet2;
 use crate::surface::data::kind::Domain;
@@ -135,9 +134,9 @@ pub fn foot_within(evaluator: Evaluator, p: DVec3, guess: (f64, f64), u: (f64, f
 }
 
 /// Feet on a surface, held in the parts of (u, v) where it is.
-struct Whole<'a>(Evaluator<'a>);
+struct WholeSurface<'a>(Evaluator<'a>);
 
-impl Footing for Whole<'_> {
+impl Footing for WholeSurface<'_> {
     fn jet(&self, uv: DVec2) -> Jet2 {
         self.0.jet(uv.x, uv.y)
     }
@@ -149,7 +148,7 @@ impl Footing for Whole<'_> {
 
 /// The foot of a point near a guess, with its distance.
 pub(crate) fn foot(evaluator: Evaluator, p: DVec3, guess: DVec2) -> (DVec2, f64) {
-    Whole(evaluator).foot(p, guess)
+    WholeSurface(evaluator).foot(p, guess)
 }
 
 impl Surface {
@@ -159,11 +158,6 @@ impl Surface {
     pub fn border_place(&self, k: usize, fraction: f64) -> Option<(f64, f64)> {
         self.evaluator().border_place(k, fraction)
     }
-
-    /// The same with its power form, where it has one.
-    pub fn border_place_by(&self, power_form: Option<&PowerForm>, k: usize, fraction: f64) -> Option<(f64, f64)> {
-        Evaluator::new(self, power_form).border_place(k, fraction)
-    }
 }
 
 impl Evaluator<'_> {
@@ -172,8 +166,8 @@ impl Evaluator<'_> {
         let surface = self.surface();
         let Side::Chain { chain, .. } = surface.side(k) else { return None };
         let p = chain.point(fraction);
-        let course = surface.parts().trim.as_ref().and_then(|trim| trim.courses.get(k));
-        match course {
+        let trim_curve = surface.parts().trim.as_ref().and_then(|trim| trim.trim_curves.get(k));
+        match trim_curve {
             _ if surface.is_flat() => surface.flat_uv(p),
             Some(TrimCurve::Line(a, b)) => {
                 let t = surface.side_parameter(k, fraction);

@@ -19,12 +19,12 @@ pub(crate) fn within(x: f64, (low, high): (f64, f64)) -> Vec<f64> {
     turns.into_iter().map(|n| x + n as f64).collect()
 }
 
-/// Halvings of a stretch of a border, one after the other and in all: where a damaged border jumps to and fro each half may be as long.
+/// Halvings of a piece of a border, one after the other and in all: where a damaged border jumps to and fro each half may be as long.
 const MAX_DEPTH: u32 = 40;
 const MOST: u32 = 16 * MAX_DEPTH;
 
 /// A fraction of a chain and its place.
-type Foot = (f64, DVec2);
+type ChainFoot = (f64, DVec2);
 
 impl Surface {
     /// A place and the same place whole turns away, round a surface that closes: of a trimmed surface all that its loops may hold.
@@ -48,7 +48,7 @@ impl Surface {
     pub fn holds(&self, u: f64, v: f64) -> bool {
         let Some(trim) = &self.parts().trim else { return true };
         self.copies((u, v)).into_iter().any(|p| {
-            let turns: f64 = trim.courses.iter().enumerate().map(|(k, course)| self.turning(k, course, p)).sum();
+            let turns: f64 = trim.trim_curves.iter().enumerate().map(|(k, trim_curve)| self.turning(k, trim_curve, p)).sum();
             turns > std::f64::consts::PI
         })
     }
@@ -63,16 +63,16 @@ impl Surface {
     }
 
     /// The angle by which border `k` turns about a place.
-    fn turning(&self, k: usize, course: &TrimCurve, p: DVec2) -> f64 {
+    fn turning(&self, k: usize, trim_curve: &TrimCurve, p: DVec2) -> f64 {
         match self.side(k) {
-            Side::Chain { chain, .. } => self.turn_along(course, Some(&chain), p),
-            _ => self.turn_along(course, None, p),
+            Side::Chain { chain, .. } => self.turn_along(trim_curve, Some(&chain), p),
+            _ => self.turn_along(trim_curve, None, p),
         }
     }
 
     /// The angle by which a way over the surface turns about a place; the chain is the one whose feet it has.
-    pub(crate) fn turn_along(&self, course: &TrimCurve, chain: Option<&Chain>, p: DVec2) -> f64 {
-        match course {
+    pub(crate) fn turn_along(&self, trim_curve: &TrimCurve, chain: Option<&Chain>, p: DVec2) -> f64 {
+        match trim_curve {
             TrimCurve::Line(a, b) => angle(DVec2::from(*a), DVec2::from(*b), p),
             TrimCurve::Pcurve(pcurve) => {
                 let Some(chain) = chain else { return 0.0 };
@@ -81,15 +81,15 @@ impl Surface {
                     if p.cmplt(low).any() || p.cmpgt(high).any() {
                         return angle(at[0].1, at[at.len() - 1].1, p);
                     }
-                    at.windows(2).map(|w| self.turn_of(chain, (w[0], w[1]), p, (MAX_DEPTH, &mut { MOST }))).sum()
+                    at.windows(2).map(|w| self.turn_of(chain, (w[0], w[1]), p, MAX_DEPTH, &mut { MOST })).sum()
                 };
-                pcurve.stretches().map(turned).sum()
+                pcurve.boxed_pieces().map(turned).sum()
             }
         }
     }
 
-    /// The same for a stretch of a chain between two of its feet, halved while the place may lie between it and its chord.
-    fn turn_of(&self, chain: &Chain, ((fa, a), (fb, b)): (Foot, Foot), p: DVec2, (deep, left): (u32, &mut u32)) -> f64 {
+    /// The same for a piece of a chain between two of its feet, halved while the place may lie between it and its chord.
+    fn turn_of(&self, chain: &Chain, ((fa, a), (fb, b)): (ChainFoot, ChainFoot), p: DVec2, deep: u32, left: &mut u32) -> f64 {
         let length = a.distance(b);
         let nearest = {
             let share = ((p - a).dot(b - a) / (length * length)).clamp(0.0, 1.0);
@@ -105,8 +105,8 @@ impl Surface {
             Some((u, v)) => DVec2::new(u, v),
             None => foot(self.evaluator(), chain.point(middle), guess).0,
         };
-        let first = self.turn_of(chain, ((fa, a), (middle, at)), p, (deep - 1, left));
-        first + self.turn_of(chain, ((middle, at), (fb, b)), p, (deep - 1, left))
+        let first = self.turn_of(chain, ((fa, a), (middle, at)), p, deep - 1, left);
+        first + self.turn_of(chain, ((middle, at), (fb, b)), p, deep - 1, left)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Nearest points of surfaces.
 //!
-//! Of a profile carried straight or turned the profile's own nearest point is taken, found by bounds (`SweptProfile`). Any other
+//! Of a profile extruded or turned the profile's own nearest point is taken, found by bounds (`SweptProfile`). Any other
 //! surface is sampled once; a query starts a safeguarded Newton descent from the best few local minima among the samples of each
 //! rectangle between creases; blocks of samples whose box is too far away are not looked at. The samples are finer than the bends of
 //! the curves below (at least four in every cell between knots), but this is sampling: a dent narrower than a sixteenth of a cell
@@ -55,7 +55,7 @@ struct Sampled {
 
 /// Creases and seams that a descent goes through, at the most.
 const BEYOND: usize = 16;
-/// Samples of a border that no curve carries.
+/// Samples of a border without a curve.
 const BORDER: usize = 64;
 
 impl Nearest {

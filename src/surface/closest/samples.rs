@@ -10,38 +10,51 @@ use crate::surface::data::breaks::{chain_breaks, tidy};
 use crate::surface::data::kind::Domain;
 use crate::surface::rails::side::Side;
 
-/// Samples along each side of a block.
-const BLOCK: usize = 8;
-/// A local minimum among the samples that is farther than the nearest sample by so many distances of neighbouring samples is
-/// not tried.
-const BEHIND: f64 = 2.0;
-/// Samples along one direction, at the least.
-const LEAST: usize = 24;
-/// Samples in a cell between breaks, at the least.
-const EACH: usize = 4;
-/// Samples of a surface between its breaks, at the most.
-const MOST: usize = 1 << 18;
-/// Even cells along each direction of a surface with three sides, at the most.
-const CELLS: f64 = 127.0;
-/// Points from whose samples a descent starts, at the most.
-const STARTS: usize = 64;
+/// How finely a surface is sampled, and from where descents start.
+struct Sampling {
+    /// Samples along each side of a block.
+    block_side: usize,
+    /// A local minimum among the samples that is farther than the nearest sample by so many distances of neighbouring samples is
+    /// not tried.
+    behind_spacings: f64,
+    /// Samples along one direction, at the least.
+    least_each_way: usize,
+    /// Samples in a cell between breaks, at the least.
+    least_in_cell: usize,
+    /// Samples of a surface between its breaks, at the most.
+    max_samples: usize,
+    /// Even cells along each direction of a surface with three sides, at the most.
+    max_even_cells: f64,
+    /// Points from whose samples a descent starts, at the most.
+    max_starts: usize,
+}
+
+const SAMPLING: Sampling = Sampling {
+    block_side: 8,
+    behind_spacings: 2.0,
+    least_each_way: 24,
+    least_in_cell: 4,
+    max_samples: 1 << 18,
+    max_even_cells: 127.0,
+    max_starts: 64,
+};
 
 /// Points of a surface at the crossings of columns and rows of its square.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Samples {
-    columns: Line,
-    rows: Line,
+    columns: SampleLine,
+    rows: SampleLine,
     points: Vec<DVec3>,
     blocks: Vec<Block>,
 }
 
 /// Where the square is sampled along one direction.
 #[derive(Clone, Debug, Default)]
-struct Line {
+struct SampleLine {
     at: Vec<f64>,
-    /// Between which creases each of them lies, as places among `stops`: of the stretch before and of the one after, which differ on a
+    /// Between which creases each of them lies, as places among `stops`: of the interval before and of the one after, which differ on a
     /// crease only.
-    stretches: Vec<(usize, usize)>,
+    intervals: Vec<(usize, usize)>,
     /// Creases, with 0 and 1.
     stops: Vec<f64>,
     /// The places among `at` of the stops.
@@ -71,7 +84,7 @@ pub(crate) struct Start {
     pub least: f64,
 }
 
-impl Line {
+impl SampleLine {
     fn new(at: Vec<f64>, creases: &[f64], closed: bool) -> Self {
         let (mut stops, mut ends) = (vec![0.0], vec![0]);
         for crease in creases {
@@ -83,39 +96,39 @@ impl Line {
         }
         stops.push(1.0);
         ends.push(at.len().saturating_sub(1));
-        let stretch = |k: usize| {
+        let interval = |k: usize| {
             let after = ends[1..ends.len() - 1].partition_point(|end| *end <= k);
             let before = ends[1..ends.len() - 1].partition_point(|end| *end < k);
             (before, after)
         };
-        let stretches = (0..at.len()).map(stretch).collect();
-        Self { at, stretches, stops, ends, closed }
+        let intervals = (0..at.len()).map(interval).collect();
+        Self { at, intervals, stops, ends, closed }
     }
 
-    /// The stretches that a sample belongs to.
+    /// The intervals that a sample belongs to.
     fn of(&self, k: usize) -> impl Iterator<Item = usize> + use<> {
-        let (before, after) = self.stretches[k];
+        let (before, after) = self.intervals[k];
         before..=after
     }
 
-    /// The samples beside one in a stretch, and itself.
-    fn beside(&self, k: usize, stretch: usize) -> std::ops::RangeInclusive<usize> {
-        k.saturating_sub(1).max(self.ends[stretch])..=(k + 1).min(self.ends[stretch + 1])
+    /// The samples beside one in an interval, and itself.
+    fn beside(&self, k: usize, interval: usize) -> std::ops::RangeInclusive<usize> {
+        k.saturating_sub(1).max(self.ends[interval])..=(k + 1).min(self.ends[interval + 1])
     }
 
-    fn within(&self, stretch: usize) -> (f64, f64) {
-        (self.stops[stretch], self.stops[stretch + 1])
+    fn within(&self, interval: usize) -> (f64, f64) {
+        (self.stops[interval], self.stops[interval + 1])
     }
 
-    /// What follows a stretch at its end where `x` is: the place there and its stretch, beyond a crease or a seam.
+    /// What follows an interval at its end where `x` is: the place there and its interval, beyond a crease or a seam.
     fn beyond(&self, x: f64, (low, high): (f64, f64)) -> Option<(f64, (f64, f64))> {
         let n = self.stops.len();
-        let stretch = |k: usize| (self.stops[k], self.stops[k + 1]);
+        let interval = |k: usize| (self.stops[k], self.stops[k + 1]);
         let at = |x: f64| self.stops.iter().position(|stop| *stop == x);
         if x == high {
-            at(high).filter(|k| k + 1 < n).map(|k| (x, stretch(k))).or(self.closed.then(|| (0.0, stretch(0))))
+            at(high).filter(|k| k + 1 < n).map(|k| (x, interval(k))).or(self.closed.then(|| (0.0, interval(0))))
         } else if x == low {
-            at(low).filter(|k| *k > 0).map(|k| (x, stretch(k - 1))).or(self.closed.then(|| (1.0, stretch(n - 2))))
+            at(low).filter(|k| *k > 0).map(|k| (x, interval(k - 1))).or(self.closed.then(|| (1.0, interval(n - 2))))
         } else {
             None
         }
@@ -138,13 +151,13 @@ impl Samples {
         let square = surface.domain() == Domain::Square;
         let (us, vs) = if square { surface.kinks() } else { (&[][..], &[][..]) };
         let (closed_u, closed_v) = if square { surface.closed() } else { (false, false) };
-        let (columns, rows) = (Line::new(xs, us, closed_u), Line::new(ys, vs, closed_v));
+        let (columns, rows) = (SampleLine::new(xs, us, closed_u), SampleLine::new(ys, vs, closed_v));
         let mut made = Self { columns, rows, points, blocks: Vec::new() };
         let (nx, ny) = made.size();
-        for j in (0..ny).step_by(BLOCK) {
-            for i in (0..nx).step_by(BLOCK) {
+        for j in (0..ny).step_by(SAMPLING.block_side) {
+            for i in (0..nx).step_by(SAMPLING.block_side) {
                 job::poll();
-                let (rows, columns) = ((j, (j + BLOCK).min(ny)), (i, (i + BLOCK).min(nx)));
+                let (rows, columns) = ((j, (j + SAMPLING.block_side).min(ny)), (i, (i + SAMPLING.block_side).min(nx)));
                 let mut block = Block { rows, columns, around: Box3::EMPTY, reach: 0.0 };
                 for k in block.samples(nx) {
                     block.around = block.around.with(made.points[k]);
@@ -174,7 +187,7 @@ impl Samples {
         apart.fold(0.0, f64::max).sqrt()
     }
 
-    /// The rectangles between creases in which a sample lies, as stretches of columns and rows.
+    /// The rectangles between creases in which a sample lies, as intervals of columns and rows.
     fn rectangles(&self, k: usize) -> impl Iterator<Item = (usize, usize)> {
         let (i, j) = (k % self.columns.at.len(), k / self.columns.at.len());
         self.rows.of(j).flat_map(move |r| self.columns.of(i).map(move |c| (c, r)))
@@ -192,10 +205,10 @@ impl Samples {
             if !again {
                 (points, last) = (points + 1, Some(self.points[k]));
             }
-            if points > STARTS {
+            if points > SAMPLING.max_starts {
                 break;
             }
-            let least = far(k).sqrt() - BEHIND * self.reach(k);
+            let least = far(k).sqrt() - SAMPLING.behind_spacings * self.reach(k);
             let mut add = |k: usize, (c, r): (usize, usize)| {
                 let place = (self.columns.at[k % nx], self.rows.at[k / nx]);
                 starts.push(Start { place, within: [self.columns.within(c), self.rows.within(r)], least });
@@ -237,10 +250,10 @@ impl Samples {
         };
         let mut minima = Vec::new();
         for (block, apart) in self.blocks.iter().zip(&apart) {
-            if apart.sqrt() > nearest + BEHIND * block.reach {
+            if apart.sqrt() > nearest + SAMPLING.behind_spacings * block.reach {
                 continue;
             }
-            for k in block.samples(nx).filter(|k| far(*k).sqrt() <= nearest + BEHIND * self.reach(*k)) {
+            for k in block.samples(nx).filter(|k| far(*k).sqrt() <= nearest + SAMPLING.behind_spacings * self.reach(*k)) {
                 minima.extend(self.rectangles(k).filter(|r| lowest(k, *r)).map(|r| (k, r)));
             }
         }
@@ -248,8 +261,8 @@ impl Samples {
         minima
     }
 
-    /// Where a sample is one of a pole, at which samples beside one another in a row or column coincide (all of them, or a stretch):
-    /// the local minima of the rows beside, and the samples next to the stretch. From the pole itself no descent can turn into the
+    /// Where a sample is one of a pole, at which samples beside one another in a row or column coincide (all of them, or an interval):
+    /// the local minima of the rows beside, and the samples next to the interval. From the pole itself no descent can turn into the
     /// direction that leads to the point. The samples of the pole are added to `poles`.
     fn round_pole(&self, k: usize, far: &impl Fn(usize) -> f64, poles: &mut Vec<usize>) -> Vec<usize> {
         let (nx, ny) = self.size();
@@ -294,7 +307,7 @@ fn grid(surface: &Surface) -> (Vec<f64>, Vec<f64>) {
             _ => 1.0,
         };
         let narrowest = (0..surface.n_sides()).map(gaps).fold(1.0, f64::min);
-        let cells = (1.0 / narrowest).ceil().min(CELLS) as usize;
+        let cells = (1.0 / narrowest).ceil().min(SAMPLING.max_even_cells) as usize;
         xs = (1..cells).map(|k| k as f64 / cells as f64).collect();
         ys.clone_from(&xs);
     }
@@ -306,13 +319,13 @@ fn grid(surface: &Surface) -> (Vec<f64>, Vec<f64>) {
         ys.extend(kinks_v);
     }
     let (xs, ys) = (stations(&tidy(xs, EPSILON)), stations(&tidy(ys, EPSILON)));
-    if xs.len().saturating_mul(ys.len()) <= MOST { (xs, ys) } else { (stations(&us), stations(&vs)) }
+    if xs.len().saturating_mul(ys.len()) <= SAMPLING.max_samples { (xs, ys) } else { (stations(&us), stations(&vs)) }
 }
 
 /// Sample stations between given inner ends of cells.
 pub(crate) fn stations(inner: &[f64]) -> Vec<f64> {
     let stops = [&[0.0], inner, &[1.0]].concat();
-    let each = EACH.max(LEAST.div_ceil(stops.len() - 1));
+    let each = SAMPLING.least_in_cell.max(SAMPLING.least_each_way.div_ceil(stops.len() - 1));
     let mut all = Vec::with_capacity(each * stops.len());
     for w in stops.windows(2) {
         all.extend((0..each).map(|k| w[0] + (w[1] - w[0]) * k as f64 / each as f64));

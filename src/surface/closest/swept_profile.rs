@@ -1,18 +1,16 @@
-//! Nearest points of swept surfaces: one of a profile carried straight or turned about an axis is that of its profile, seen along
+//! Nearest points of swept surfaces: one of a profile extruded or turned about an axis is that of its profile, seen along
 //! the way. Curves find theirs by bounds, so that no other sheet of the surface is taken however near it lies.
 
 use std::f64::consts::TAU;
-use std::sync::Arc;
 
 use glam::DVec3;
 
 use crate::base::math::atan2;
 use crate::base::tolerance::ROUNDING_SHARE;
+use crate::geometry::Curve;
 use crate::geometry::curves::curve::Shape as CurveShape;
 use crate::geometry::query::closest::closest as closest_on_curve;
-use crate::geometry::shapes::arc::EllipticArc;
-use crate::geometry::shapes::nurbs::{projected, weighted};
-use crate::geometry::{Curve, Nurbs};
+use crate::geometry::shapes::nurbs::projected;
 use crate::network::{Chain, Run};
 use crate::surface::core::shape::Shape;
 use crate::surface::core::surface::Surface;
@@ -22,13 +20,13 @@ use crate::surface::shapes::sweep::Path;
 #[derive(Clone, Debug)]
 pub(crate) struct SweptProfile {
     chain: Chain,
-    way: Way,
+    way: SweptWay,
     /// v runs against the profile.
     is_flipped: bool,
 }
 
 #[derive(Clone, Debug)]
-enum Way {
+enum SweptWay {
     /// Along a vector: each run's curve as it is seen along it, all in the plane through the origin.
     Straight { by: DVec3, direction: DVec3, seen: Vec<Curve>, is_across: bool },
     /// About an axis: the profile lies in the half plane from the axis along the unit vector `out`.
@@ -47,12 +45,12 @@ impl SweptProfile {
                 if !chain.runs().iter().all(whole) {
                     return None;
                 }
-                let seen = chain.runs().iter().map(|run| seen_along(&run.curve, direction)).collect::<Option<Vec<Curve>>>()?;
+                let seen = chain.runs().iter().map(|run| projected_along(&run.curve, direction)).collect::<Option<Vec<Curve>>>()?;
                 let heights = || framing(&chain).into_iter().flatten().map(|p| (p - chain.start()).dot(direction).abs());
                 let is_across = heights().fold(0.0, f64::max) <= ROUNDING_SHARE * chain.bbox().diagonal();
-                Way::Straight { by, direction, seen, is_across }
+                SweptWay::Straight { by, direction, seen, is_across }
             }
-            Path::Turn { about, axis, angle } => Way::Turn { about, axis, out: half_plane(&chain, about, axis)?, angle },
+            Path::Turn { about, axis, angle } => SweptWay::Turn { about, axis, out: half_plane(&chain, about, axis)?, angle },
         };
         Some(Self { chain, way, is_flipped: whole.parts().flipped })
     }
@@ -66,12 +64,12 @@ impl SweptProfile {
     /// The same with v as the profile's fraction.
     fn along_profile(&self, p: DVec3) -> Option<(f64, f64)> {
         match &self.way {
-            Way::Straight { by, direction, seen, is_across } => {
+            SweptWay::Straight { by, direction, seen, is_across } => {
                 let (v, foot) = self.nearest_seen(seen, p - *direction * direction.dot(p));
                 let u = (p - foot).dot(*by) / by.length_squared();
                 (*is_across || (0.0..=1.0).contains(&u)).then(|| (u.clamp(0.0, 1.0), v))
             }
-            Way::Turn { about, axis, out, angle } => {
+            SweptWay::Turn { about, axis, out, angle } => {
                 let arm = p - *about;
                 let along = *axis * axis.dot(arm);
                 let (x, y) = (arm.dot(*out), arm.dot(axis.cross(*out)));
@@ -102,20 +100,11 @@ impl SweptProfile {
     }
 }
 
-/// A curve as it is seen along a unit direction, in the plane through the origin, with its own parameter; `None` where that is no
+/// The projection of a curve along a unit direction into the plane through the origin, with its own parameter; `None` where that is no
 /// curve of the same kind.
-fn seen_along(curve: &Curve, direction: DVec3) -> Option<Curve> {
+fn projected_along(curve: &Curve, direction: DVec3) -> Option<Curve> {
     let flat = |p: DVec3| p - direction * direction.dot(p);
-    let shape = match curve.shape() {
-        CurveShape::Line(a, b) => CurveShape::Line(flat(*a), flat(*b)),
-        CurveShape::Arc(arc) => CurveShape::Arc(EllipticArc::new(flat(arc.center), flat(arc.u), flat(arc.v), arc.sweep)),
-        CurveShape::Nurbs(c) => {
-            let poles = c.poles.iter().map(|q| weighted(flat(projected(*q)), q.w)).collect();
-            CurveShape::Nurbs(Arc::new(Nurbs { poles, ..Nurbs::clone(c) }))
-        }
-        _ => return None,
-    };
-    Some(Curve::new(shape, curve.kind(), curve.origin()))
+    curve.mapped(flat, flat)
 }
 
 /// Points in whose planes and lines the curves of a chain lie: control points, ends, and those of the frames of arcs.

@@ -13,7 +13,7 @@ use crate::base::range::Interval3;
 use crate::base::tolerance::{BOX, EPSILON, SLIVER};
 use crate::base::{job, work};
 use crate::network::Chain;
-use crate::surface::closest::boxed::{Boxed, Cell, MOST, Sample, extremes, halves};
+use crate::surface::closest::boxed::{Boxed, MOST, Sample, UvBox, extremes, halves};
 use crate::surface::closest::curve_extent::curve_bbox_between;
 use crate::surface::closest::samples::stations;
 use crate::surface::core::surface::Surface;
@@ -24,10 +24,10 @@ use crate::surface::rails::side::Side;
 /// The smallest box along the axes that holds a trimmed surface: no point of it, nor of its borders, stands out by more than [`BOX`]
 /// of the diagonal.
 pub(crate) fn trimmed_bbox(surface: &Surface) -> Boxed {
-    let borders: Vec<Border> = (0..surface.n_sides()).filter_map(|k| Border::of(surface, k)).collect();
+    let borders: Vec<BorderCurve> = (0..surface.n_sides()).filter_map(|k| BorderCurve::of(surface, k)).collect();
     let mut bounds = borders.iter().fold(Boxed::of(Box3::EMPTY), |bounds, border| match border {
-        Border::Chain(chain, (from, to), _) => bounds.and(curve_bbox_between(chain, *from, *to)),
-        Border::Line(a, b) => line_bbox(surface, *a, *b, bounds),
+        BorderCurve::Chain(chain, (from, to), _) => bounds.and(curve_bbox_between(chain, *from, *to)),
+        BorderCurve::Line(a, b) => line_bbox(surface, *a, *b, bounds),
     });
     if surface.is_flat() {
         return bounds;
@@ -45,7 +45,7 @@ pub(crate) fn trimmed_bbox(surface: &Surface) -> Boxed {
             bounds = bounds.with(p);
         }
     }
-    Search { surface, base: &base, borders: &borders }.grown(bounds, (&us, &vs))
+    ExtentSearch { surface, base: &base, borders: &borders }.grown(bounds, (&us, &vs))
 }
 
 /// Evaluations for telling which side of the borders places are on, after which what is left counts by its bound: loops of damaged files
@@ -57,14 +57,14 @@ fn stands_out(bounds: &Box3, p: DVec3) -> bool {
 }
 
 /// What a border of a trimmed surface is.
-enum Border {
+enum BorderCurve {
     /// A curve between two of its fractions, in a box in (u, v).
     Chain(Chain, (f64, f64), (DVec2, DVec2)),
     /// A straight line in (u, v).
     Line(DVec2, DVec2),
 }
 
-impl Border {
+impl BorderCurve {
     fn of(surface: &Surface, k: usize) -> Option<Self> {
         match surface.side(k) {
             Side::Chain { chain, from, to } => Some(Self::Chain(chain, (from.min(to), from.max(to)), course_box(surface, k))),
@@ -75,7 +75,7 @@ impl Border {
 
 /// A box in (u, v) about what a border runs through: about its places, and farther by the longest step between them.
 fn course_box(surface: &Surface, k: usize) -> (DVec2, DVec2) {
-    let places = surface.parts().trim.as_ref().map_or_else(Vec::new, |trim| trim.courses[k].places());
+    let places = surface.parts().trim.as_ref().map_or_else(Vec::new, |trim| trim.trim_curves[k].places());
     let step = places.windows(2).map(|w| w[0].distance(w[1])).fold(0.0, f64::max);
     let low = places.iter().copied().fold(DVec2::INFINITY, DVec2::min);
     let high = places.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
@@ -125,14 +125,14 @@ fn spread_between(surface: &Surface, a: DVec2, b: DVec2) -> Enclosure {
     surface.enclosure(ends(a.x, b.x), ends(a.y, b.y))
 }
 
-struct Search<'a> {
+struct ExtentSearch<'a> {
     surface: &'a Surface,
     /// The surface below it.
     base: &'a Surface,
-    borders: &'a [Border],
+    borders: &'a [BorderCurve],
 }
 
-impl Search<'_> {
+impl ExtentSearch<'_> {
     /// The box grown by what of the inside stands out of it.
     fn grown(&self, mut bounds: Boxed, (us, vs): (&[f64], &[f64])) -> Boxed {
         let (closed_u, closed_v) = self.base.closed();
@@ -148,7 +148,7 @@ impl Search<'_> {
         let (us, vs) = (cells(us), cells(vs));
         let cells = all(us.clone(), vs.clone()).chain(all(thin(&across_u), vs)).chain(all(us, thin(&across_v)));
         // Each with whether no border is known to run over it.
-        let mut open: VecDeque<(Cell, bool)> = cells.map(|cell| (cell, false)).collect();
+        let mut open: VecDeque<(UvBox, bool)> = cells.map(|cell| (cell, false)).collect();
         let triangle = self.base.domain() == Domain::Triangle;
         let (room, gap) = (BOX * bounds.bounds.diagonal(), self.surface.gap());
         let (mut seen, mut spent) = (0, 0);
@@ -207,7 +207,7 @@ impl Search<'_> {
     }
 
     /// Whether no border runs over a rectangle: of curves, by their distance from its middle; they lie within `gap` of the surface.
-    fn is_clear(&self, (u, v): Cell, enclosure: &Enclosure, gap: f64) -> bool {
+    fn is_clear(&self, (u, v): UvBox, enclosure: &Enclosure, gap: f64) -> bool {
         let (mid, hull) = (enclosure.mid.p, enclosure.p.bounds());
         let reach = (hull.max - mid).max(mid - hull.min).length() + gap;
         let (low, high) = (DVec2::new(u.0, v.0), DVec2::new(u.1, v.1));
@@ -216,10 +216,10 @@ impl Search<'_> {
         let apart =
             |a: DVec2, b: DVec2| copies.iter().map(|copy| *copy - center).all(|by| a.cmplt(low + by).any() || b.cmpgt(high + by).any());
         self.borders.iter().all(|border| match border {
-            Border::Chain(chain, _, (least, most)) => {
+            BorderCurve::Chain(chain, _, (least, most)) => {
                 apart(*most, *least) || chain.bbox().distance_squared(mid) > reach * reach || chain.closest(mid).2 > reach
             }
-            Border::Line(a, b) => apart(a.max(*b), a.min(*b)),
+            BorderCurve::Line(a, b) => apart(a.max(*b), a.min(*b)),
         })
     }
 }

@@ -23,13 +23,13 @@ pub struct Strip {
     /// Ends, in the surface's parameters.
     ends: (f64, f64),
     /// The same in the shape's, cut at lines where its formula changes.
-    parts: Vec<Part>,
+    parts: Vec<EnclosurePart>,
     /// Whether first derivatives across a cut may jump.
     jumps: bool,
 }
 
 #[derive(Clone, Debug)]
-struct Part {
+struct EnclosurePart {
     ends: (f64, f64),
     known: Known,
 }
@@ -160,13 +160,13 @@ impl Shape {
                 Self::Framed(s) => Known::Profile(s.profile().line(ends.0, ends.1)),
                 _ => Known::Nothing,
             };
-            Part { ends, known }
+            EnclosurePart { ends, known }
         };
         let parts = cut(x0, x1, &lines).into_iter().map(part).collect();
         Strip { ends: (x0, x1), parts, jumps }
     }
 
-    fn enclosure(&self, u: &Part, v: &Part) -> Enclosure {
+    fn enclosure(&self, u: &EnclosurePart, v: &EnclosurePart) -> Enclosure {
         let half = (0.5 * (u.ends.1 - u.ends.0), 0.5 * (v.ends.1 - v.ends.0));
         let middle = (0.5 * (u.ends.0 + u.ends.1), 0.5 * (v.ends.0 + v.ends.1));
         match (self, &u.known, &v.known) {

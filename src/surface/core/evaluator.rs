@@ -80,11 +80,13 @@ impl<'a> Evaluator<'a> {
     }
 
     /// The point.
+    #[inline]
     pub fn point(self, u: f64, v: f64) -> DVec3 {
         self.power_form.map_or_else(|| self.surface.point(u, v), |form| form.point(u, v))
     }
 
     /// Point, ∂/∂u and ∂/∂v.
+    #[inline]
     pub fn tangents(self, u: f64, v: f64) -> [DVec3; 3] {
         let by_shape = || {
             let jet = self.surface.jet(u, v);
@@ -94,6 +96,7 @@ impl<'a> Evaluator<'a> {
     }
 
     /// Point and all derivatives.
+    #[inline]
     pub fn jet(self, u: f64, v: f64) -> Jet2 {
         self.power_form.map_or_else(|| self.surface.jet(u, v), |form| form.jet(u, v))
     }

@@ -1,7 +1,7 @@
 //! Trimmed nets that run at very uneven speed, in parameters in which they run evenly: what a mesher is given.
 //!
 //! A net may run through a tenth of its length in a thousandth of its range. Triangles that are straight in its parameters are bent in space
-//! there, and bounds over boxes of them tell nothing. Each parameter that does so is a monotone function of a new one: quadratic between some
+//! there, and bounds over boxes of them say nothing. Each parameter that does so is a monotone function of a new one: quadratic between some
 //! stops, with a slope of one over the speed at each of them. In the new one the same surface is a net of twice the degree, exactly.
 
 use std::sync::Arc;
@@ -30,7 +30,7 @@ impl Evened {
         }
         let speed_map = |in_u: bool, closed: bool| if closed { None } else { net.speed_map(in_u) };
         let speed_maps = [speed_map(true, parts.closed.0), speed_map(false, parts.closed.1)];
-        if speed_maps.iter().all(Option::is_none) || !trim.courses.iter().all(TrimCurve::is_upright) {
+        if speed_maps.iter().all(Option::is_none) || !trim.trim_curves.iter().all(TrimCurve::is_upright) {
             return None;
         }
         let mut shape = net.clone();
@@ -40,7 +40,7 @@ impl Evened {
             }
         }
         let mut evened = Self { surface: surface.clone(), speed_maps, flipped: parts.flipped };
-        let trim = Arc::new(trim.with_courses(trim.courses.iter().map(|c| c.mapped(&|at| evened.place(at))).collect()));
+        let trim = Arc::new(trim.with_courses(trim.trim_curves.iter().map(|c| c.mapped(&|at| evened.place(at))).collect()));
         evened.surface = surface.remade(Parts { shape: Shape::Nurbs(shape), trim: Some(trim), ..parts.clone() });
         Some(evened)
     }

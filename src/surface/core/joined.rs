@@ -6,11 +6,11 @@
 use glam::DVec3;
 
 use crate::base::bbox::Box3;
-use crate::base::digest::{StableHash, StableHasher};
 use crate::base::math;
-use crate::base::range::{Interval, Interval3};
-use crate::base::tolerance::{EPSILON, SLIVER};
+use crate::base::range::Interval;
+use crate::base::tolerance::EPSILON;
 use crate::geometry::Motion;
+use crate::surface::core::joined_piece::{JoinedPiece, SidePair, foot};
 use crate::surface::core::surface::Surface;
 use crate::surface::data::breaks::tidy;
 use crate::surface::data::enclosure::Enclosure;
@@ -18,154 +18,11 @@ use crate::surface::data::jet::Jet2;
 use crate::surface::data::one_sided::OneSided;
 
 /// Places by which a map of y is begun.
-const PLACES: usize = 64;
-/// Newton steps.
-const STEPS: usize = 16;
-
-type Leans = (OneSided, OneSided);
-
-/// How the unit square of a surface lies in that of x and y.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Turn {
-    /// x runs along v.
-    pub swap: bool,
-    /// x runs backwards.
-    pub back_x: bool,
-    /// y runs backwards.
-    pub back_y: bool,
-}
-
-impl StableHash for Turn {
-    fn hash_into(&self, to: &mut StableHasher) {
-        (self.swap, self.back_x, self.back_y).hash_into(to);
-    }
-}
-
-fn backwards(back: bool, x: f64) -> f64 {
-    if back { 1.0 - x } else { x }
-}
-
-impl Turn {
-    /// (u, v) of a place.
-    pub fn place(self, x: f64, y: f64) -> (f64, f64) {
-        let (x, y) = (backwards(self.back_x, x), backwards(self.back_y, y));
-        if self.swap { (y, x) } else { (x, y) }
-    }
-
-    fn leans(self, (x, y): Leans) -> Leans {
-        let turned = |lean: OneSided, back: bool| if back { lean.turned() } else { lean };
-        let (x, y) = (turned(x, self.back_x), turned(y, self.back_y));
-        if self.swap { (y, x) } else { (x, y) }
-    }
-
-    /// The side (v = 0, u = 1, v = 1, u = 0) that is y = 0, x = 1, y = 1 or x = 0.
-    pub fn side(self, k: usize) -> usize {
-        let k = match (k % 2 == 1, self.back_x, self.back_y) {
-            (true, true, _) | (false, _, true) => (k + 2) % 4,
-            _ => k,
-        };
-        if self.swap { 3 - k } else { k }
-    }
-
-    fn jet(self, jet: Jet2) -> Jet2 {
-        let (x, y) = (if self.back_x { -1.0 } else { 1.0 }, if self.back_y { -1.0 } else { 1.0 });
-        let j = if self.swap { Jet2 { du: jet.dv, dv: jet.du, duu: jet.dvv, dvv: jet.duu, ..jet } } else { jet };
-        Jet2 { du: j.du * x, dv: j.dv * y, duv: j.duv * (x * y), ..j }
-    }
-
-    fn enclosure(self, s: Enclosure) -> Enclosure {
-        let s = if self.swap { Enclosure { du: s.dv, dv: s.du, duu: s.dvv, dvv: s.duu, half: (s.half.1, s.half.0), ..s } } else { s };
-        let sign = |r: Interval3, back: bool| if back { -r } else { r };
-        Enclosure { du: sign(s.du, self.back_x), dv: sign(s.dv, self.back_y), duv: sign(s.duv, self.back_x != self.back_y), ..s }
-    }
-}
-
-/// One of the surfaces.
-#[derive(Clone, Debug)]
-pub struct Piece {
-    /// The surface, of a square.
-    pub surface: Surface,
-    /// How it lies.
-    pub turn: Turn,
-    /// Its place in the order in which they were given.
-    pub given: usize,
-    /// Of a piece that closes in y: its y, turned, where y is 0. Its seam lies elsewhere than that of all then.
-    pub shift: f64,
-    /// Its y at even steps of the y of the one before; empty where both are one.
-    follow: Vec<f64>,
-}
-
-crate::content!(Piece { surface, turn, given, shift, follow });
-
-impl Piece {
-    /// A surface that lies so, its own y not yet told.
-    pub fn new(surface: Surface, turn: Turn, given: usize) -> Self {
-        Self { surface, turn, given, shift: 0.0, follow: Vec::new() }
-    }
-
-    /// Begins y where the border x = `x` is nearest to a point. Of pieces that close in y.
-    pub fn begin_at(&mut self, x: f64, p: DVec3) {
-        let far = |w: f64| self.jet(x, w, (OneSided::After, OneSided::After)).p.distance_squared(p);
-        let even = |n: usize| n as f64 / (4 * PLACES) as f64;
-        let start = (0..4 * PLACES).min_by(|a, b| far(even(*a)).total_cmp(&far(even(*b)))).map_or(0.0, even);
-        let w = foot_round(self, x, start, p);
-        self.shift = if (SLIVER..=1.0 - SLIVER).contains(&w) { w } else { 0.0 };
-    }
-
-    /// Where its seam lies in y; none where y begins there.
-    pub fn seam(&self) -> Option<f64> {
-        (self.shift > 0.0).then_some(1.0 - self.shift)
-    }
-
-    /// Its own y, turned, at a y, on the side to which the lean points at its seam.
-    fn around(&self, y: f64, lean: OneSided) -> f64 {
-        let Some(seam) = self.seam() else { return y };
-        if y > seam || y == seam && lean == OneSided::After { y - seam } else { y + self.shift }
-    }
-
-    /// Point and derivatives with respect to its own x and y.
-    pub fn jet(&self, x: f64, y: f64, leans: Leans) -> Jet2 {
-        // At its ends, which may be inside the surface, it is known from inside.
-        let lean = if y >= 1.0 {
-            OneSided::Before
-        } else if y <= 0.0 {
-            OneSided::After
-        } else {
-            leans.1
-        };
-        let (y, leans) = (self.around(y, lean), (leans.0, lean));
-        let (u, v) = self.turn.place(x, y);
-        self.turn.jet(self.surface.jet_one_sided(u, v, self.turn.leans(leans)))
-    }
-
-    /// Bounds over a rectangle whose y has the seam beside it at most.
-    fn enclosure(&self, x: (f64, f64), y: (f64, f64)) -> Enclosure {
-        let after = self.seam().is_some_and(|seam| 0.5 * (y.0 + y.1) > seam);
-        let own = |y: f64| match self.seam() {
-            None => y,
-            Some(seam) if after => (y - seam).max(0.0),
-            Some(_) => (y + self.shift).min(1.0),
-        };
-        let y = (own(y.0), own(y.1));
-        let (a, b) = (self.turn.place(x.0, y.0), self.turn.place(x.1, y.1));
-        let order = |a: f64, b: f64| (a.min(b), a.max(b));
-        self.turn.enclosure(self.surface.enclosure(order(a.0, b.0), order(a.1, b.1)))
-    }
-
-    /// Inner values of x and of y from those of u and v.
-    fn lines(&self, (us, vs): (Vec<f64>, Vec<f64>)) -> (Vec<f64>, Vec<f64>) {
-        let (xs, ys) = if self.turn.swap { (vs, us) } else { (us, vs) };
-        let each = |list: Vec<f64>, back: bool| list.into_iter().map(|x| backwards(back, x)).collect();
-        let from_start = |y: f64| if y < self.shift { y + 1.0 - self.shift } else { y - self.shift };
-        let ys: Vec<f64> = each(ys, self.turn.back_y);
-        (each(xs, self.turn.back_x), ys.into_iter().map(from_start).collect())
-    }
-}
-
+pub(super) const PLACES: usize = 64;
 /// Surfaces as one.
 #[derive(Clone, Debug)]
 pub struct Joined {
-    pieces: Vec<Piece>,
+    pieces: Vec<JoinedPiece>,
     /// Where each begins in x, and 1.
     stops: Vec<f64>,
     /// x is v.
@@ -180,7 +37,7 @@ crate::content!(Joined { pieces, stops, across_v } but { rough, bent });
 
 impl Joined {
     /// Pieces in order, each with its mean length along x; the borders between them are found to be common.
-    pub fn new(pieces: Vec<Piece>, lengths: &[f64], across_v: bool) -> Self {
+    pub fn new(pieces: Vec<JoinedPiece>, lengths: &[f64], across_v: bool) -> Self {
         let total: f64 = lengths.iter().sum();
         let mut stops = vec![0.0];
         stops.extend(lengths[..lengths.len() - 1].iter().scan(0.0, |sum, l| {
@@ -199,13 +56,13 @@ impl Joined {
 
     /// The surfaces in the order in which they were given.
     pub fn given(&self) -> Vec<Surface> {
-        let mut order: Vec<&Piece> = self.pieces.iter().collect();
+        let mut order: Vec<&JoinedPiece> = self.pieces.iter().collect();
         order.sort_by_key(|p| p.given);
         order.into_iter().map(|p| p.surface.clone()).collect()
     }
 
     /// The pieces.
-    pub fn pieces(&self) -> &[Piece] {
+    pub fn pieces(&self) -> &[JoinedPiece] {
         &self.pieces
     }
 
@@ -217,8 +74,8 @@ impl Joined {
     /// Jets on both sides of the seam before piece k at a y of all.
     pub fn beside(&self, k: usize, y: f64) -> (Jet2, Jet2) {
         let x = self.stops[k];
-        let side = |lean: OneSided| self.xy_jet(x, y, (lean, OneSided::After));
-        (side(OneSided::Before), side(OneSided::After))
+        let jet = |side: OneSided| self.xy_jet(x, y, (side, OneSided::After));
+        (jet(OneSided::Before), jet(OneSided::After))
     }
 
     /// Whether first derivatives across the seam before piece k are the same on both sides.
@@ -233,7 +90,7 @@ impl Joined {
     fn is_even_along(&self, y: f64) -> bool {
         (0..=PLACES).step_by(4).all(|n| {
             let x = n as f64 / PLACES as f64;
-            let [a, b] = [OneSided::Before, OneSided::After].map(|lean| self.xy_jet(x, y, (OneSided::After, lean)).dv);
+            let [a, b] = [OneSided::Before, OneSided::After].map(|side| self.xy_jet(x, y, (OneSided::After, side)).dv);
             a.distance(b) <= EPSILON * PLACES as f64 * (a.length() + b.length())
         })
     }
@@ -241,8 +98,8 @@ impl Joined {
     /// The y of piece k at even steps of the y of the one before; empty where they agree.
     fn table(&self, k: usize) -> Vec<f64> {
         let (a, b) = (&self.pieces[k - 1], &self.pieces[k]);
-        let leans = (OneSided::After, OneSided::After);
-        let point = |piece: &Piece, x: f64, y: f64| piece.jet(x, y, leans).p;
+        let sides = (OneSided::After, OneSided::After);
+        let point = |piece: &JoinedPiece, x: f64, y: f64| piece.jet(x, y, sides).p;
         let grid: Vec<DVec3> = (0..=4 * PLACES).map(|n| point(b, 0.0, n as f64 / (4 * PLACES) as f64)).collect();
         let mut from = 0;
         let mut table = Vec::with_capacity(PLACES + 1);
@@ -262,7 +119,7 @@ impl Joined {
     }
 
     /// y of piece k and its two derivatives at a y of all.
-    fn own(&self, k: usize, y: f64, lean: OneSided) -> [f64; 3] {
+    fn own(&self, k: usize, y: f64, side: OneSided) -> [f64; 3] {
         let mut at = [y, 1.0, 0.0];
         for n in 1..=k {
             let (a, b) = (&self.pieces[n - 1], &self.pieces[n]);
@@ -270,7 +127,7 @@ impl Joined {
                 continue;
             }
             let w = Self::next(a, b, at[0]);
-            let (from, to) = (a.jet(1.0, at[0], (OneSided::Before, lean)), b.jet(0.0, w, (OneSided::After, lean)));
+            let (from, to) = (a.jet(1.0, at[0], (OneSided::Before, side)), b.jet(0.0, w, (OneSided::After, side)));
             let square = to.dv.length_squared();
             if square <= 0.0 {
                 at = [w, at[1], 0.0];
@@ -285,7 +142,7 @@ impl Joined {
     }
 
     /// The y of `b` where its first border has the point that the last border of `a` has at a y of its own.
-    fn next(a: &Piece, b: &Piece, y: f64) -> f64 {
+    fn next(a: &JoinedPiece, b: &JoinedPiece, y: f64) -> f64 {
         if y <= 0.0 || y >= 1.0 {
             return y.clamp(0.0, 1.0);
         }
@@ -308,20 +165,20 @@ impl Joined {
     }
 
     /// The piece at an x, and its own x.
-    fn at(&self, x: f64, lean: OneSided) -> (usize, f64) {
+    fn at(&self, x: f64, side: OneSided) -> (usize, f64) {
         let last = self.pieces.len() - 1;
         let inner = &self.stops[1..=last];
-        let k = inner.partition_point(|s| if lean == OneSided::Before { *s < x - EPSILON } else { *s <= x + EPSILON });
+        let k = inner.partition_point(|s| if side == OneSided::Before { *s < x - EPSILON } else { *s <= x + EPSILON });
         let (low, high) = (self.stops[k], self.stops[k + 1]);
         // From the nearer end, so that both are met exactly.
         let share = if x - low <= high - x { (x - low) / (high - low) } else { 1.0 - (high - x) / (high - low) };
         (k, if share.abs() <= EPSILON { 0.0 } else { share })
     }
 
-    fn xy_jet(&self, x: f64, y: f64, leans: Leans) -> Jet2 {
-        let (k, x) = self.at(x, leans.0);
-        let [w, slope, bend] = self.own(k, y, leans.1);
-        let jet = self.pieces[k].jet(x, w, leans);
+    fn xy_jet(&self, x: f64, y: f64, sides: SidePair) -> Jet2 {
+        let (k, x) = self.at(x, sides.0);
+        let [w, slope, bend] = self.own(k, y, sides.1);
+        let jet = self.pieces[k].jet(x, w, sides);
         let s = 1.0 / (self.stops[k + 1] - self.stops[k]);
         Jet2 {
             p: jet.p,
@@ -338,8 +195,8 @@ impl Joined {
     }
 
     /// Point and derivatives.
-    pub fn jet(&self, u: f64, v: f64, leans: Leans) -> Jet2 {
-        if self.across_v { Self::swapped(self.xy_jet(v, u, (leans.1, leans.0))) } else { self.xy_jet(u, v, leans) }
+    pub fn jet(&self, u: f64, v: f64, sides: SidePair) -> Jet2 {
+        if self.across_v { Self::swapped(self.xy_jet(v, u, (sides.1, sides.0))) } else { self.xy_jet(u, v, sides) }
     }
 
     /// Where the formula changes along u or v, and whether first derivatives may jump there.
@@ -349,14 +206,14 @@ impl Joined {
 
     /// The y at which pieces have a seam inside.
     pub fn turned_seams(&self) -> Vec<f64> {
-        let one = |(k, piece): (usize, &Piece)| piece.seam().map(|seam| self.common(k, seam));
+        let one = |(k, piece): (usize, &JoinedPiece)| piece.seam().map(|seam| self.common(k, seam));
         tidy(self.pieces.iter().enumerate().filter_map(one).collect(), EPSILON * PLACES as f64)
     }
 
     /// How normals turn at most over a line of constant y.
     pub fn fold_at(&self, y: f64) -> f64 {
-        let normal = |x: f64, lean: OneSided| {
-            let jet = self.xy_jet(x, y, (OneSided::After, lean));
+        let normal = |x: f64, side: OneSided| {
+            let jet = self.xy_jet(x, y, (OneSided::After, side));
             jet.du.cross(jet.dv).normalize_or_zero()
         };
         let at = |n: usize| (n as f64 + 0.5) / PLACES as f64;
@@ -428,42 +285,7 @@ impl Joined {
 
     /// Carried by a motion.
     pub fn moved(&self, motion: &Motion) -> Self {
-        let piece = |p: &Piece| Piece { surface: p.surface.moved(motion), ..p.clone() };
+        let piece = |p: &JoinedPiece| JoinedPiece { surface: p.surface.moved(motion), ..p.clone() };
         Self { pieces: self.pieces.iter().map(piece).collect(), ..self.clone() }
     }
-}
-
-/// The y near a guess where the first border of a piece is nearest to a point.
-pub fn foot(piece: &Piece, guess: f64, p: DVec3) -> f64 {
-    foot_on(piece, 0.0, guess, p)
-}
-
-/// The same of the line of constant x of a piece that closes in y: beside its seam the foot may be on either side of it.
-pub fn foot_round(piece: &Piece, x: f64, guess: f64, p: DVec3) -> f64 {
-    let starts = if guess <= 0.0 || guess >= 1.0 { vec![0.0, 1.0] } else { vec![guess] };
-    let far = |w: &f64| piece.jet(x, *w, (OneSided::After, OneSided::After)).p.distance_squared(p);
-    let feet = starts.into_iter().map(|start| foot_on(piece, x, start, p));
-    feet.min_by(|a, b| far(a).total_cmp(&far(b))).unwrap_or(guess)
-}
-
-/// The y near a guess where the line of constant x is nearest to a point.
-fn foot_on(piece: &Piece, x: f64, guess: f64, p: DVec3) -> f64 {
-    let mut w = guess;
-    for _ in 0..STEPS {
-        let jet = piece.jet(x, w, (OneSided::After, OneSided::After));
-        let off = jet.p - p;
-        let bend = jet.dv.length_squared() + off.dot(jet.dvv);
-        let square = jet.dv.length_squared();
-        if square <= 0.0 {
-            break;
-        }
-        let step = off.dot(jet.dv) / if bend > 0.0 { bend } else { square };
-        let next = (w - step).clamp(0.0, 1.0);
-        let still = (next - w).abs() <= f64::EPSILON;
-        w = next;
-        if still {
-            break;
-        }
-    }
-    w
 }

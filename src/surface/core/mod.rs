@@ -1,9 +1,12 @@
 //! A surface of any kind: its shape with borders, kinks and loops, its bounds, and what is made of it for many evaluations.
 
+mod break_lines;
 pub mod enclosure;
 pub mod evaluator;
 pub mod evened;
 pub mod joined;
+pub mod joined_piece;
+mod normals;
 pub mod plane;
 pub mod power_form;
 pub mod shape;

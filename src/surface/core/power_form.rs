@@ -10,7 +10,6 @@ use glam::{DVec2, DVec3, DVec4};
 
 use crate::base::tolerance::{BEFORE_KNOT, EPSILON};
 use crate::base::work;
-use crate::surface::core::evaluator::Evaluator;
 use crate::surface::core::shape::Shape;
 use crate::surface::core::surface::Surface;
 use crate::surface::data::jet::Jet2;
@@ -69,24 +68,6 @@ impl Surface {
             }
             _ => None,
         }
-    }
-}
-
-/// Evaluation by the net made ready, where it is.
-impl Surface {
-    /// The point.
-    pub fn point_by(&self, quick: Option<&PowerForm>, u: f64, v: f64) -> DVec3 {
-        Evaluator::new(self, quick).point(u, v)
-    }
-
-    /// Point, ∂/∂u and ∂/∂v.
-    pub fn tangents_by(&self, quick: Option<&PowerForm>, u: f64, v: f64) -> [DVec3; 3] {
-        Evaluator::new(self, quick).tangents(u, v)
-    }
-
-    /// Point and all derivatives.
-    pub fn jet_by(&self, quick: Option<&PowerForm>, u: f64, v: f64) -> Jet2 {
-        Evaluator::new(self, quick).jet(u, v)
     }
 }
 

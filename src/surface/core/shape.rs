@@ -28,13 +28,13 @@ pub enum Shape {
     Blend(Blend),
     /// Blended from three borders.
     Trilateral(Trilateral),
-    /// A profile carried along a path.
+    /// A profile translated or turned along a path.
     Sweep(Sweep),
     /// A plane over its frame.
     Plane(Frame),
     /// A net.
     Nurbs(NurbsSurface),
-    /// A profile carried with a frame.
+    /// A profile moved with a frame.
     Framed(Framed),
     /// A height over triangles.
     Scatter(Field),
@@ -59,17 +59,17 @@ impl StableHash for Shape {
 
 impl Shape {
     /// Point and derivatives, from the given sides where they jump.
-    pub fn jet(&self, u: f64, v: f64, lean: (OneSided, OneSided)) -> Jet2 {
+    pub fn jet(&self, u: f64, v: f64, side: (OneSided, OneSided)) -> Jet2 {
         work::spend(1);
         match self {
-            Self::Blend(s) => s.jet(u, v, lean),
+            Self::Blend(s) => s.jet(u, v, side),
             Self::Trilateral(s) => s.jet(u, v),
-            Self::Sweep(s) => s.jet(u, v, lean),
+            Self::Sweep(s) => s.jet(u, v, side),
             Self::Plane(s) => s.jet(u, v),
-            Self::Nurbs(s) => s.jet(u, v, lean),
-            Self::Framed(s) => s.jet(u, v, lean),
+            Self::Nurbs(s) => s.jet(u, v, side),
+            Self::Framed(s) => s.jet(u, v, side),
             Self::Scatter(s) => s.jet(u, v),
-            Self::Joined(s) => s.jet(u, v, lean),
+            Self::Joined(s) => s.jet(u, v, side),
         }
     }
 
@@ -107,8 +107,8 @@ impl Shape {
             Self::Sweep(s) => s.jets(us, vs, out),
             Self::Framed(s) => s.jets(us, vs, out),
             _ => {
-                for &(v, lean_v) in vs {
-                    out.extend(us.iter().map(|&(u, lean_u)| self.jet(u, v, (lean_u, lean_v))));
+                for &(v, side_v) in vs {
+                    out.extend(us.iter().map(|&(u, side_u)| self.jet(u, v, (side_u, side_v))));
                 }
             }
         }
@@ -133,7 +133,7 @@ impl Shape {
         }
     }
 
-    /// Interior ends of the cells in which a review samples.
+    /// Interior ends of the cells in which the report samples.
     pub fn cells(&self) -> (Vec<f64>, Vec<f64>) {
         match self {
             Self::Blend(s) => s.cells(),

@@ -2,20 +2,19 @@
 
 use std::sync::{Arc, OnceLock};
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 use crate::base::bbox::Box3;
 use crate::base::digest::{StableHash, StableHasher};
 use crate::base::origin::Origin;
-use crate::base::tolerance::{POLE_STEP, SLIVER, Tolerance};
+use crate::base::tolerance::SLIVER;
 use crate::base::work::Once;
 use crate::geometry::Motion;
 use crate::network::Chain;
 use crate::surface::core::evened::Evened;
 use crate::surface::core::shape::Shape;
 use crate::surface::core::trim::Trim;
-use crate::surface::data::breaks::tidy;
-use crate::surface::data::jet::{Jet2, unit_normal};
+use crate::surface::data::jet::Jet2;
 use crate::surface::data::kind::{Domain, SurfaceKind};
 use crate::surface::data::one_sided::OneSided;
 use crate::surface::rails::rail::Rail;
@@ -54,7 +53,7 @@ pub(crate) struct Parts {
     pub kinks: (Vec<f64>, Vec<f64>),
     pub chains: Vec<Chain>,
     pub generated: Vec<Chain>,
-    /// Loops and courses of a trimmed surface.
+    /// Loops and trim curves of a trimmed surface.
     pub trim: Option<Arc<Trim>>,
     /// The shape is read with v backwards (a triangle: with u and v exchanged).
     pub flipped: bool,
@@ -187,10 +186,10 @@ impl Surface {
 
     /// Point and derivatives of the smooth piece on the given side in u (first) and v (second): on the border of a
     /// patch the side where the patch lies.
-    pub fn jet_one_sided(&self, u: f64, v: f64, lean: (OneSided, OneSided)) -> Jet2 {
+    pub fn jet_one_sided(&self, u: f64, v: f64, side: (OneSided, OneSided)) -> Jet2 {
         let (u, v) = self.wrapped(u, v);
-        let (u, v, lean) = self.inner(u, v, lean);
-        self.outer(self.0.parts.shape.jet(u, v, lean))
+        let (u, v, side) = self.inner(u, v, side);
+        self.outer(self.0.parts.shape.jet(u, v, side))
     }
 
     /// Into 0…1 where a surface closes: borders may run over the seam. What rounding put beside a seam stays on its side.
@@ -200,11 +199,11 @@ impl Surface {
     }
 
     /// From this surface's parameters to the shape's.
-    pub(crate) fn inner(&self, u: f64, v: f64, lean: (OneSided, OneSided)) -> (f64, f64, (OneSided, OneSided)) {
+    pub(crate) fn inner(&self, u: f64, v: f64, side: (OneSided, OneSided)) -> (f64, f64, (OneSided, OneSided)) {
         match (self.0.parts.flipped, self.ground()) {
-            (false, _) => (u, v, lean),
-            (true, Domain::Triangle) => (v, u, (lean.1, lean.0)),
-            (true, _) => (u, 1.0 - v, (lean.0, lean.1.turned())),
+            (false, _) => (u, v, side),
+            (true, Domain::Triangle) => (v, u, (side.1, side.0)),
+            (true, _) => (u, 1.0 - v, (side.0, side.1.turned())),
         }
     }
 
@@ -220,54 +219,6 @@ impl Surface {
     /// Point.
     pub fn point(&self, u: f64, v: f64) -> DVec3 {
         self.jet(u, v).p
-    }
-
-    /// Unit normal `du × dv`; at a pole the limit; zero only where the surface is singular.
-    pub fn normal(&self, u: f64, v: f64) -> DVec3 {
-        self.normal_lean(u, v, (OneSided::After, OneSided::After))
-    }
-
-    /// Unit normal of the smooth piece on the given side, see [`Surface::jet_one_sided`].
-    pub fn normal_lean(&self, u: f64, v: f64, lean: (OneSided, OneSided)) -> DVec3 {
-        let jet = self.jet_one_sided(u, v, lean);
-        if let Some(normal) = unit_normal(&jet) {
-            return normal;
-        }
-        let at_end = [v == 0.0, u == 1.0, v == 1.0, u == 0.0];
-        let pole =
-            (0..4).find(|&k| at_end[k] && self.0.parts.domain == Domain::Square && matches!(self.0.parts.borders[k].side, Side::Pole(_)));
-        pole.map_or(DVec3::ZERO, |k| self.pole_normal(k))
-    }
-
-    /// The normal of the pole on side `k`: the cross product of the tangents of the two borders that end there, or the
-    /// mean of the normals a step away where these are parallel.
-    fn pole_normal(&self, k: usize) -> DVec3 {
-        let place = |along: f64, inward: f64| match k {
-            0 => (along, inward),
-            1 => (1.0 - inward, along),
-            2 => (along, 1.0 - inward),
-            _ => (inward, along),
-        };
-        let inward = |along: f64| {
-            let (u, v) = place(along, 0.0);
-            let lean =
-                (if u == 1.0 { OneSided::Before } else { OneSided::After }, if v == 1.0 { OneSided::Before } else { OneSided::After });
-            let jet = self.jet_one_sided(u, v, lean);
-            [jet.dv, -jet.du, -jet.dv, jet.du][k]
-        };
-        const SAMPLES: u32 = 16;
-        let mean = (0..SAMPLES).fold(DVec3::ZERO, |sum, i| {
-            let (u, v) = place((f64::from(i) + 0.5) / f64::from(SAMPLES), POLE_STEP);
-            sum + unit_normal(&self.jet(u, v)).unwrap_or(DVec3::ZERO)
-        });
-        let (first, last) = (inward(0.0), inward(1.0));
-        let cross = first.cross(last);
-        if cross.length() > Tolerance::new(0.0, 0.0).angle * first.length() * last.length() {
-            // Borders say the plane, the neighbourhood says which side is up.
-            let normal = cross.normalize_or_zero();
-            return if normal.dot(mean) < 0.0 { -normal } else { normal };
-        }
-        mean.normalize_or_zero()
     }
 
     /// Points of the tensor grid `us × vs`, row by row (u fastest), curves evaluated once per row.
@@ -294,57 +245,17 @@ impl Surface {
     pub fn jets(&self, us: &[(f64, OneSided)], vs: &[(f64, OneSided)]) -> Vec<Jet2> {
         let mut out = Vec::with_capacity(us.len() * vs.len());
         if self.0.parts.flipped && self.ground() == Domain::Triangle {
-            for &(v, lean_v) in vs {
-                out.extend(us.iter().map(|&(u, lean_u)| self.jet_one_sided(u, v, (lean_u, lean_v))));
+            for &(v, side_v) in vs {
+                out.extend(us.iter().map(|&(u, side_u)| self.jet_one_sided(u, v, (side_u, side_v))));
             }
         } else if self.0.parts.flipped {
-            let turned: Vec<(f64, OneSided)> = vs.iter().map(|(v, lean)| (1.0 - v, lean.turned())).collect();
+            let turned: Vec<(f64, OneSided)> = vs.iter().map(|(v, side)| (1.0 - v, side.turned())).collect();
             self.0.parts.shape.jets(us, &turned, &mut out);
             out.iter_mut().for_each(|jet| *jet = self.outer(*jet));
         } else {
             self.0.parts.shape.jets(us, vs, &mut out);
         }
         out
-    }
-
-    /// Interior values of u (first) and v (second) where the surface has a kink line, ascending.
-    pub fn kinks(&self) -> (&[f64], &[f64]) {
-        (&self.0.parts.kinks.0, &self.0.parts.kinks.1)
-    }
-
-    /// Interior values of u (first) and v (second) where the surface is less than analytic: kinks, network lines, joints
-    /// and knots of the curves, ascending. Between them quadrature and bounds behave.
-    pub fn breaks(&self) -> (Vec<f64>, Vec<f64>) {
-        let (us, vs) = self.0.parts.shape.breaks();
-        let turned = |list: &[f64]| list.iter().rev().map(|x| 1.0 - x).collect();
-        match (self.0.parts.flipped, self.ground()) {
-            (false, _) => (us, vs),
-            (true, Domain::Triangle) => (vs, us),
-            (true, _) => (us, turned(&vs)),
-        }
-    }
-
-    /// Whether it, or what it was cut from, goes through scattered points: it is analytic over its triangles.
-    pub fn is_scattered(&self) -> bool {
-        matches!(self.0.parts.shape, Shape::Scatter(_))
-    }
-
-    /// The triangles of (u, v) over which the surface is analytic, all of a whole surface through scattered points; empty for others.
-    pub fn triangles(&self) -> Vec<[DVec2; 3]> {
-        let Shape::Scatter(field) = &self.0.parts.shape else { return Vec::new() };
-        let turn = |c: DVec2| if self.0.parts.flipped { DVec2::new(c.x, 1.0 - c.y) } else { c };
-        field.pieces().iter().map(|piece| piece.corners.map(turn)).collect()
-    }
-
-    /// Ends of the cells that a review samples: network lines and kinks (of a net: knots), inner ones, u first.
-    pub fn cells(&self) -> (Vec<f64>, Vec<f64>) {
-        let (us, vs) = self.0.parts.shape.cells();
-        let turned = |list: &[f64]| list.iter().rev().map(|x| 1.0 - x).collect();
-        match (self.0.parts.flipped, self.ground()) {
-            (false, _) => (us, vs),
-            (true, Domain::Triangle) => (vs, us),
-            (true, _) => (us, turned(&vs)),
-        }
     }
 
     /// How many sides: 4, 3 for a triangle, any number for a plane without a map, 0 when unbounded.
@@ -453,14 +364,5 @@ impl Surface {
     /// A box that holds the surface, of control points and curve boxes: larger than the exact one.
     pub fn hull(&self) -> Box3 {
         self.0.parts.shape.hull()
-    }
-}
-
-impl Surface {
-    /// Shares of the way along a straight line between two (u, v) at which it crosses one of [`Surface::breaks`], ascending, 0 and 1 left out.
-    pub fn breaks_between(&self, from: (f64, f64), to: (f64, f64)) -> Vec<f64> {
-        let (us, vs) = self.breaks();
-        let along = |lines: Vec<f64>, a: f64, b: f64| lines.into_iter().filter(move |_| a != b).map(move |x| (x - a) / (b - a));
-        tidy(along(us, from.0, to.0).chain(along(vs, from.1, to.1)).collect(), f64::EPSILON * 64.0)
     }
 }

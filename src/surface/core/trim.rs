@@ -13,20 +13,20 @@ pub(crate) struct Trim {
     /// Number of borders of each loop, the outer one first.
     pub loops: Vec<usize>,
     /// One a border.
-    pub courses: Vec<TrimCurve>,
+    pub trim_curves: Vec<TrimCurve>,
     /// Corners of a box in (u, v) that holds the loops; where a surface closes they may lie whole turns away.
     pub reach: (DVec2, DVec2),
 }
 
 // Where it lies in (u, v) follows from the borders and the surface below.
-crate::content!(Trim { loops } but { ground, courses, reach });
+crate::content!(Trim { loops } but { ground, trim_curves, reach });
 
-/// A box in (u, v) that holds some courses: between two places a curve is nowhere farther from its chord than the chord is long.
-pub(crate) fn reach(courses: &[TrimCurve]) -> (DVec2, DVec2) {
+/// A box in (u, v) that holds some trim curves: between two places a curve is nowhere farther from its chord than the chord is long.
+pub(crate) fn reach(trim_curves: &[TrimCurve]) -> (DVec2, DVec2) {
     let (mut low, mut high, mut longest) = (DVec2::INFINITY, DVec2::NEG_INFINITY, 0.0_f64);
-    for course in courses {
-        let places = course.places();
-        if matches!(course, TrimCurve::Pcurve(_)) {
+    for trim_curve in trim_curves {
+        let places = trim_curve.places();
+        if matches!(trim_curve, TrimCurve::Pcurve(_)) {
             longest = places.windows(2).map(|w| w[0].distance(w[1])).fold(longest, f64::max);
         }
         for p in places {
@@ -38,18 +38,18 @@ pub(crate) fn reach(courses: &[TrimCurve]) -> (DVec2, DVec2) {
 
 impl Trim {
     pub fn flipped(&self) -> Self {
-        let mut courses = Vec::with_capacity(self.courses.len());
+        let mut trim_curves = Vec::with_capacity(self.trim_curves.len());
         let mut first = 0;
         let turn = |(u, v): (f64, f64)| if self.ground == Domain::Triangle { (v, u) } else { (u, 1.0 - v) };
         for n in &self.loops {
-            courses.extend(self.courses[first..first + n].iter().rev().map(|c| c.flipped(&turn)));
+            trim_curves.extend(self.trim_curves[first..first + n].iter().rev().map(|c| c.flipped(&turn)));
             first += n;
         }
-        self.with_courses(courses)
+        self.with_courses(trim_curves)
     }
 
-    /// The same by other courses.
-    pub fn with_courses(&self, courses: Vec<TrimCurve>) -> Self {
-        Self { reach: reach(&courses), courses, ..self.clone() }
+    /// The same by other trim curves.
+    pub fn with_courses(&self, trim_curves: Vec<TrimCurve>) -> Self {
+        Self { reach: reach(&trim_curves), trim_curves, ..self.clone() }
     }
 }

@@ -36,7 +36,7 @@ impl Surface {
     /// The straight line in (u, v) that a border of a trimmed surface is, in the loop's direction; `None` for one that is a
     /// curve there.
     pub fn border_line(&self, k: usize) -> Option<((f64, f64), (f64, f64))> {
-        match self.parts().trim.as_ref()?.courses.get(k)? {
+        match self.parts().trim.as_ref()?.trim_curves.get(k)? {
             TrimCurve::Line(a, b) => Some((*a, *b)),
             TrimCurve::Pcurve(_) => None,
         }
@@ -45,8 +45,8 @@ impl Surface {
     /// About where a share of the length of a border lies in (u, v), and how far from there it may be; exact on planes and for straight
     /// lines in (u, v). `None` for a border of which nothing is known there.
     pub fn border_about(&self, k: usize, share: f64) -> Option<(DVec2, f64)> {
-        let course = self.parts().trim.as_ref().and_then(|trim| trim.courses.get(k));
-        match (self.side(k), course) {
+        let trim_curve = self.parts().trim.as_ref().and_then(|trim| trim.trim_curves.get(k));
+        match (self.side(k), trim_curve) {
             (Side::Chain { chain, from, to }, _) if self.is_flat() => {
                 Some((self.flat_uv(chain.point(from + (to - from) * share))?.into(), 0.0))
             }
@@ -60,7 +60,7 @@ impl Surface {
     /// units; 0 for others. Along a border it is measured where it was followed.
     pub fn gap(&self) -> f64 {
         let Some(trim) = &self.parts().trim else { return 0.0 };
-        let off = trim.courses.iter().map(|c| if let TrimCurve::Pcurve(pcurve) = c { pcurve.off } else { 0.0 }).fold(0.0, f64::max);
+        let off = trim.trim_curves.iter().map(|c| if let TrimCurve::Pcurve(pcurve) = c { pcurve.off } else { 0.0 }).fold(0.0, f64::max);
         let end = |k: usize| match self.side(k) {
             Side::Chain { chain, to, .. } => Some(chain.point(to)),
             _ => self.border_line(k).map(|(_, b)| self.point(b.0, b.1)),
@@ -86,7 +86,7 @@ impl Surface {
             first += n;
             range
                 .flat_map(|k| {
-                    let mut places = trim.courses[k].places();
+                    let mut places = trim.trim_curves[k].places();
                     places.pop();
                     places
                 })

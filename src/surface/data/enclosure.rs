@@ -16,7 +16,7 @@ pub struct Enclosure {
     pub du: Interval3,
     /// ∂/∂v.
     pub dv: Interval3,
-    /// ∂²/∂u²; vast where a curve below has a cusp or a net a corner.
+    /// ∂²/∂u²; unbounded where a curve below has a cusp or a net a corner.
     pub duu: Interval3,
     /// ∂²/∂u∂v.
     pub duv: Interval3,

@@ -10,7 +10,7 @@ use crate::geometry::curves::curve::Shape;
 use crate::geometry::{Curve, Nurbs};
 
 /// Ends of curves that are one place: curve and whether its last point is meant.
-type End = (usize, bool);
+type CurveEnd = (usize, bool);
 
 /// Largest turn at a joint where several go on, as a cosine.
 const ON: f64 = 0.9;
@@ -45,14 +45,14 @@ fn outward(curve: &Curve, last: bool) -> DVec3 {
 }
 
 /// What goes on at the first (0) and last (1) point of each curve.
-fn continuations(curves: &[Curve], tolerance: &Tolerance) -> Vec<[Option<End>; 2]> {
-    let ends: Vec<End> = (0..curves.len()).flat_map(|k| [(k, false), (k, true)]).collect();
+fn continuations(curves: &[Curve], tolerance: &Tolerance) -> Vec<[Option<CurveEnd>; 2]> {
+    let ends: Vec<CurveEnd> = (0..curves.len()).flat_map(|k| [(k, false), (k, true)]).collect();
     let mut next = vec![[None, None]; curves.len()];
     for (i, &(k, last)) in ends.iter().enumerate() {
         let at = end(&curves[k], last);
-        let here = |e: &End| end(&curves[e.0], e.1).distance(at) <= 2.0 * tolerance.point;
-        let others: Vec<End> = ends.iter().enumerate().filter(|(j, e)| *j != i && here(e)).map(|(_, e)| *e).collect();
-        let turn = |e: &End| -outward(&curves[k], last).dot(outward(&curves[e.0], e.1));
+        let here = |e: &CurveEnd| end(&curves[e.0], e.1).distance(at) <= 2.0 * tolerance.point;
+        let others: Vec<CurveEnd> = ends.iter().enumerate().filter(|(j, e)| *j != i && here(e)).map(|(_, e)| *e).collect();
+        let turn = |e: &CurveEnd| -outward(&curves[k], last).dot(outward(&curves[e.0], e.1));
         next[k][usize::from(last)] = match others.as_slice() {
             [one] => Some(*one),
             several => several.iter().copied().filter(|e| turn(e) > ON).max_by(|x, y| turn(x).total_cmp(&turn(y))),
@@ -72,7 +72,7 @@ fn continuations(curves: &[Curve], tolerance: &Tolerance) -> Vec<[Option<End>; 2
 }
 
 /// The row that begins with a curve at its first point (`from_last`: at its last).
-fn row(curves: &[Curve], next: &[[Option<End>; 2]], (first, from_last): End, used: &mut [bool], tolerance: &Tolerance) -> Curve {
+fn row(curves: &[Curve], next: &[[Option<CurveEnd>; 2]], (first, from_last): CurveEnd, used: &mut [bool], tolerance: &Tolerance) -> Curve {
     let mut parts: Vec<Curve> = Vec::new();
     let mut at = Some((first, from_last));
     while let Some((k, backwards)) = at {

@@ -5,18 +5,35 @@ use glam::{DVec2, DVec3};
 use crate::base::job;
 use crate::base::tolerance::{EPSILON, NUDGE};
 use crate::surface::intersect::pair::{Pair, Spot};
-use crate::surface::intersect::sheet::{Line, Patch};
+use crate::surface::intersect::sheet::{BorderLine, Patch};
+
+/// What steers the steps along an intersection.
+struct Marching {
+    /// Largest turn from one place to the next, as a cosine, and the one below which steps grow.
+    turn_cosines: (f64, f64),
+    /// Places in a row at most.
+    max_places: usize,
+    /// First step, as a share of the size of the pair.
+    first_step_share: f64,
+    /// Largest step, as a share of the size of the pair.
+    largest_step_share: f64,
+    /// A place on a border is as far as was foreseen up to this ratio.
+    unlike_ratio: f64,
+}
+
+const MARCH: Marching = Marching {
+    turn_cosines: (0.97, 0.995),
+    max_places: 20_000,
+    first_step_share: 1.0 / 64.0,
+    largest_step_share: 1.0 / 16.0,
+    unlike_ratio: 4.0,
+};
 
 /// A line in which two patches meet: places in a row.
 #[derive(Clone, Debug)]
 pub(crate) struct Branch {
     pub spots: Vec<Spot>,
 }
-
-/// Largest turn from one place to the next, as a cosine, and the one below which steps grow.
-const TURN: (f64, f64) = (0.97, 0.995);
-/// Places in a row at most.
-const MOST: usize = 20_000;
 
 impl Pair<'_> {
     /// The whole line through a place; the place where the march failed when it did.
@@ -36,11 +53,9 @@ impl Pair<'_> {
 
     /// Goes one way; whether it came back to the start.
     fn run(&self, start: Spot, size: f64) -> Result<(Vec<Spot>, bool), DVec3> {
-        const FIRST: f64 = 1.0 / 64.0;
-        const LARGEST: f64 = 1.0 / 16.0;
         let mut spots = vec![start];
-        let mut h = FIRST * size;
-        while spots.len() < MOST {
+        let mut h = MARCH.first_step_share * size;
+        while spots.len() < MARCH.max_places {
             job::poll();
             let here = spots[spots.len() - 1];
             if h < NUDGE * NUDGE * size {
@@ -68,14 +83,14 @@ impl Pair<'_> {
             let target = here.p + here.way * h;
             let next = self.correct(a, b, Some((target, here.way))).map(|next| self.aligned(&here, next));
             match next {
-                Some(next) if fits(&here, &next, h) && next.way.dot(here.way) >= TURN.0 => {
+                Some(next) if fits(&here, &next, h) && next.way.dot(here.way) >= MARCH.turn_cosines.0 => {
                     if spots.len() > 2 && closes(&start, &here, &next) {
                         spots.push(start);
                         return Ok((spots, true));
                     }
                     spots.push(next);
-                    if next.way.dot(here.way) >= TURN.1 {
-                        h = (1.5 * h).min(LARGEST * size);
+                    if next.way.dot(here.way) >= MARCH.turn_cosines.1 {
+                        h = (1.5 * h).min(MARCH.largest_step_share * size);
                     }
                 }
                 _ => h *= 0.5,
@@ -99,8 +114,8 @@ impl Pair<'_> {
     }
 
     /// The first border on the way to a place outside: share of the way, whether it is of the first patch, and the border.
-    fn leaves(&self, here: &Spot, a: DVec2, b: DVec2) -> Option<(f64, bool, Line)> {
-        let mut best: Option<(f64, bool, Line)> = None;
+    fn leaves(&self, here: &Spot, a: DVec2, b: DVec2) -> Option<(f64, bool, BorderLine)> {
+        let mut best: Option<(f64, bool, BorderLine)> = None;
         for (first, patch, from, to) in [(true, self.a, here.a, a), (false, self.b, here.b, b)] {
             for line in patch.lines() {
                 let (x, y) = (line.inside(patch, from), line.inside(patch, to));
@@ -149,9 +164,8 @@ fn fits(here: &Spot, next: &Spot, h: f64) -> bool {
 
 /// Whether a place on a border is about as far as was foreseen: a closed surface has the same place on its other border too.
 fn as_far(here: &Spot, end: &Spot, foreseen: f64, size: f64) -> bool {
-    const UNLIKE: f64 = 4.0;
     let far = end.p.distance(here.p);
-    far <= UNLIKE * foreseen + NUDGE * NUDGE * size && foreseen <= UNLIKE * far + NUDGE * NUDGE * size
+    far <= MARCH.unlike_ratio * foreseen + NUDGE * NUDGE * size && foreseen <= MARCH.unlike_ratio * far + NUDGE * NUDGE * size
 }
 
 /// Whether the start lies between two places.

@@ -2,8 +2,9 @@
 //! or one line.
 
 pub mod coplanar;
+mod curve_overlap;
 pub mod curve_patch;
-pub mod fit;
+pub mod fit_branch;
 pub mod join_curves;
 pub mod march;
 pub mod pair;

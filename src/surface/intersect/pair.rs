@@ -5,7 +5,7 @@ use glam::{DMat4, DVec2, DVec3, DVec4};
 use crate::base::tolerance::{EPSILON, NUDGE, SINGULAR};
 use crate::surface::closest::foot::{self, Footing};
 use crate::surface::data::jet::Jet2;
-use crate::surface::intersect::sheet::{Line, Patch, solved};
+use crate::surface::intersect::sheet::{BorderLine, Patch, solved};
 
 /// A place on both patches.
 #[derive(Clone, Copy, Debug)]
@@ -92,7 +92,7 @@ impl Pair<'_> {
     }
 
     /// The place where the common line leaves one patch over a border: `first` says which patch the line belongs to.
-    pub fn on_border(&self, first: bool, line: Line, a: DVec2, b: DVec2) -> Option<Spot> {
+    pub fn on_border(&self, first: bool, line: BorderLine, a: DVec2, b: DVec2) -> Option<Spot> {
         let (own, other) = if first { (self.a, self.b) } else { (self.b, self.a) };
         let (x, y) = if first { (a, b) } else { (b, a) };
         let (mut x, mut y) = (own.hold(line.onto(x)), other.hold(y));

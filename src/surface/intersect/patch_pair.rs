@@ -14,26 +14,40 @@ use crate::surface::intersect::march::Branch;
 use crate::surface::intersect::pair::{Pair, Spot};
 use crate::surface::intersect::sheet::{Cell, Sheet};
 
-/// Pairs looked at before giving up; a solved place counts as many as it costs.
-const MOST_PAIRS: usize = 300_000;
-/// What a place that is solved for, or a touch, costs in pairs.
-const SOLVED: usize = 2;
-/// Share of the tolerance within which cells count as flat.
-const FINE: f64 = 0.25;
-/// Flat cells that part by no more than this many tolerances run along each other.
-const DIVERGENCE: f64 = 4.0;
-/// Share of the tolerance within which cells that cross must come.
-const EXACT: f64 = 1.0 / 1024.0;
-/// Pairs of flat cells that touch, at most.
-const MOST_TOUCHES: usize = 2_000;
-/// Cells smaller than this many tolerances are not halved to find a place between their corners.
-const SMALLEST: f64 = 16.0;
-/// Share of the smaller patch below which, however large the tolerance is.
-const SHARE: f64 = 1.0 / 64.0;
+/// What limits the search for common places of two patches.
+struct PairLimits {
+    /// Pairs looked at before giving up; a solved place counts as many as it costs.
+    max_pairs: usize,
+    /// What a place that is solved for, or a touch, costs in pairs.
+    pairs_per_solution: usize,
+    /// Share of the tolerance within which cells count as flat.
+    flat_share: f64,
+    /// Flat cells that part by no more than this many tolerances run along each other.
+    divergence_tolerances: f64,
+    /// Share of the tolerance within which cells that cross must come.
+    exact_share: f64,
+    /// Pairs of flat cells that touch, at most.
+    max_touches: usize,
+    /// Cells smaller than this many tolerances are not halved to find a place between their corners.
+    least_cell_tolerances: f64,
+    /// Share of the smaller patch below which, however large the tolerance is.
+    least_cell_share: f64,
+}
+
+const SEARCH: PairLimits = PairLimits {
+    max_pairs: 300_000,
+    pairs_per_solution: 2,
+    flat_share: 0.25,
+    divergence_tolerances: 4.0,
+    exact_share: 1.0 / 1024.0,
+    max_touches: 2_000,
+    least_cell_tolerances: 16.0,
+    least_cell_share: 1.0 / 64.0,
+};
 
 /// What two patches have in common.
 #[derive(Debug, Default)]
-pub(crate) struct Common {
+pub(crate) struct CommonPlaces {
     pub branches: Vec<Branch>,
     /// Boxes of what touches without crossing.
     pub touches: Vec<Box3>,
@@ -48,7 +62,7 @@ pub(crate) enum Stopped {
     Lost(DVec3),
 }
 
-struct Search<'a> {
+struct PairSearch<'a> {
     a: &'a mut Sheet,
     b: &'a mut Sheet,
     point: f64,
@@ -57,15 +71,15 @@ struct Search<'a> {
     /// What stays within the tolerance for longer is no touch.
     long: f64,
     touched: Box3,
-    common: Common,
+    common: CommonPlaces,
     looked_at: usize,
 }
 
 /// The lines in which two patches meet, and where they touch.
-pub(crate) fn common(a: &mut Sheet, b: &mut Sheet, point: f64, long: f64) -> Result<Common, Stopped> {
+pub(crate) fn common(a: &mut Sheet, b: &mut Sheet, point: f64, long: f64) -> Result<CommonPlaces, Stopped> {
     let size = a.bounds().diagonal().min(b.bounds().diagonal());
     let (roots_a, roots_b) = (a.roots.clone(), b.roots.clone());
-    let mut search = Search { a, b, point, size, long, touched: Box3::EMPTY, common: Common::default(), looked_at: 0 };
+    let mut search = PairSearch { a, b, point, size, long, touched: Box3::EMPTY, common: CommonPlaces::default(), looked_at: 0 };
     for i in roots_a {
         for j in &roots_b {
             job::poll();
@@ -75,28 +89,28 @@ pub(crate) fn common(a: &mut Sheet, b: &mut Sheet, point: f64, long: f64) -> Res
     Ok(search.common)
 }
 
-impl Search<'_> {
+impl PairSearch<'_> {
     fn pair(&mut self, i: usize, j: usize) -> Result<(), Stopped> {
         self.looked_at += 1;
         let (x, y) = (self.a.cell(i), self.b.cell(j));
         if self.a.is_outside(i) || self.b.is_outside(j) || apart(x, y, self.point) {
             return Ok(());
         }
-        if self.looked_at > MOST_PAIRS {
+        if self.looked_at > SEARCH.max_pairs {
             return Err(Stopped::Lost(x.enclosure.mid.p));
         }
-        let fine = x.thick.max(y.thick) <= FINE * self.point;
+        let fine = x.thick.max(y.thick) <= SEARCH.flat_share * self.point;
         // Flat cells that part by no more than a few tolerances run along each other.
-        let slow = fine && x.normal.cross(y.normal).length() * x.reach().min(y.reach()) <= DIVERGENCE * self.point;
+        let slow = fine && x.normal.cross(y.normal).length() * x.reach().min(y.reach()) <= SEARCH.divergence_tolerances * self.point;
         if !slow && crosses(x, y) {
-            if apart(x, y, EXACT * self.point) || self.settled(i, j)? {
+            if apart(x, y, SEARCH.exact_share * self.point) || self.settled(i, j)? {
                 return Ok(());
             }
         } else if fine {
             return self.touch(i, j);
         }
         let (x, y) = (self.a.cell(i), self.b.cell(j));
-        if x.reach().max(y.reach()) <= (SMALLEST * self.point).min(SHARE * self.size) {
+        if x.reach().max(y.reach()) <= (SEARCH.least_cell_tolerances * self.point).min(SEARCH.least_cell_share * self.size) {
             return Ok(());
         }
         let first = x.reach() >= y.reach();
@@ -116,7 +130,7 @@ impl Search<'_> {
 
     /// Whether a common place of two cells is known; a new one is marched from.
     fn settled(&mut self, i: usize, j: usize) -> Result<bool, Stopped> {
-        self.looked_at += SOLVED;
+        self.looked_at += SEARCH.pairs_per_solution;
         let (x, y) = (self.a.cell(i), self.b.cell(j));
         let pair = Pair { a: &self.a.patch, b: &self.b.patch, point: self.point };
         let Some(spot) = pair.correct(x.middle(), y.middle(), None) else { return Ok(false) };
@@ -131,7 +145,7 @@ impl Search<'_> {
     /// Flat cells along each other: a touch when they come within the tolerance.
     fn touch(&mut self, i: usize, j: usize) -> Result<(), Stopped> {
         const ROUNDS: usize = 16;
-        self.looked_at += SOLVED;
+        self.looked_at += SEARCH.pairs_per_solution;
         let (x, y) = (self.a.cell(i), self.b.cell(j));
         let (mut a, mut b) = (x.middle(), y.middle());
         let mut gap = f64::INFINITY;
@@ -151,8 +165,12 @@ impl Search<'_> {
         self.touched = self.touched.union(extent);
         self.common.touches.push(extent);
         // A single touch may have many cells where parameters crowd, at a pole.
-        let enclosure = self.touched.diagonal() > self.long;
-        if self.common.touches.len() > if enclosure { MOST_TOUCHES } else { MOST_PAIRS / 4 } { Err(Stopped::Along(at)) } else { Ok(()) }
+        let is_long = self.touched.diagonal() > self.long;
+        if self.common.touches.len() > if is_long { SEARCH.max_touches } else { SEARCH.max_pairs / 4 } {
+            Err(Stopped::Along(at))
+        } else {
+            Ok(())
+        }
     }
 }
 

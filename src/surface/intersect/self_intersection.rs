@@ -21,20 +21,36 @@ use crate::surface::intersect::patch_pair::{apart, crosses, inside};
 use crate::surface::intersect::sheet::{Cell, Patch, patches};
 use crate::surface::rails::side::Side;
 
-/// Pairs that are looked at, at most, and what a place that is solved for counts.
-const MOST_PAIRS: usize = 12_000;
-const SOLVED: usize = 4;
-/// Parts that begin, at most: faces with more creases are not looked through.
-const MOST_PARTS: usize = 2_000;
-/// Parts smaller than so many tolerances, or than this share of everything, are not halved: those of one face, and of two, which
-/// come near to each other all along the borders they share.
-const SMALLEST: f64 = 16.0;
-const SHARE: f64 = 1.0 / 256.0;
-const SHARE_OF_TWO: f64 = 1.0 / 64.0;
-/// Sine of the angle at which parts cross; below they touch.
-const SINE: f64 = 1.0 / 1024.0;
-/// Nearer to a border than so many tolerances a crossing may be what the border shares.
-const BORDER: f64 = 64.0;
+/// What limits the search for self-intersections.
+struct SelfLimits {
+    /// Pairs that are looked at, at most.
+    max_pairs: usize,
+    /// Pairs that a place that is solved for counts as.
+    pairs_per_solution: usize,
+    /// Parts that begin, at most: faces with more creases are not looked through.
+    max_parts: usize,
+    /// Parts smaller than so many tolerances are not halved.
+    least_part_tolerances: f64,
+    /// Nor those of one face smaller than this share of everything.
+    least_part_share: f64,
+    /// Nor those of two faces, which come near to each other all along the borders they share.
+    least_part_share_of_two: f64,
+    /// Sine of the angle at which parts cross; below they touch.
+    least_sine: f64,
+    /// Nearer to a border than so many tolerances a crossing may be what the border shares.
+    border_tolerances: f64,
+}
+
+const SEARCH: SelfLimits = SelfLimits {
+    max_pairs: 12_000,
+    pairs_per_solution: 4,
+    max_parts: 2_000,
+    least_part_tolerances: 16.0,
+    least_part_share: 1.0 / 256.0,
+    least_part_share_of_two: 1.0 / 64.0,
+    least_sine: 1.0 / 1024.0,
+    border_tolerances: 64.0,
+};
 
 /// A place in which a face crosses itself or another one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,24 +66,24 @@ pub struct Crossing {
 /// A place in which some of the faces cross themselves or each other, away from their borders; the first one found. Trimmed faces are
 /// left out. A touch is none, and of parts that come nearer to each other than about 1/256 of the whole the search may end without an answer.
 pub fn crossing(faces: &[Surface], tolerance: &Tolerance) -> Option<Crossing> {
-    let mut search = Search::new(faces, tolerance)?;
+    let mut search = SelfSearch::new(faces, tolerance)?;
     search.crossing()
 }
 
 /// What is known of a rectangle of a face.
-struct Part {
+struct FacePart {
     face: usize,
     patch: usize,
     cell: Cell,
     halves: Option<(usize, usize)>,
 }
 
-struct Search<'a> {
+struct SelfSearch<'a> {
     faces: &'a [Surface],
     patches: Vec<Patch>,
     breaks: Vec<(Vec<f64>, Vec<f64>)>,
     strips: Strips,
-    parts: Vec<Part>,
+    parts: Vec<FacePart>,
     roots: Vec<usize>,
     poles: Vec<DVec3>,
     point: f64,
@@ -79,7 +95,7 @@ struct Search<'a> {
 /// The work is at its end, or a crossing is found.
 struct Ended;
 
-impl<'a> Search<'a> {
+impl<'a> SelfSearch<'a> {
     fn new(faces: &'a [Surface], tolerance: &Tolerance) -> Option<Self> {
         let whole = faces.iter().fold(Box3::EMPTY, |all, s| all.union(s.hull()));
         let mut search = Self {
@@ -100,7 +116,7 @@ impl<'a> Search<'a> {
                 continue;
             }
             let (us, vs) = surface.kinks();
-            if (us.len() + 1).saturating_mul(vs.len() + 1) + search.roots.len() > MOST_PARTS {
+            if (us.len() + 1).saturating_mul(vs.len() + 1) + search.roots.len() > SEARCH.max_parts {
                 return None;
             }
             search.poles.extend((0..surface.n_sides()).filter_map(|k| if let Side::Pole(p) = surface.side(k) { Some(p) } else { None }));
@@ -108,7 +124,7 @@ impl<'a> Search<'a> {
                 let cell = search.strips.cell(face, surface, patch.u, patch.v);
                 search.patches.push(patch);
                 search.roots.push(search.parts.len());
-                search.parts.push(Part { face, patch: search.patches.len() - 1, cell, halves: None });
+                search.parts.push(FacePart { face, patch: search.patches.len() - 1, cell, halves: None });
             }
         }
         Some(search)
@@ -117,7 +133,7 @@ impl<'a> Search<'a> {
     fn crossing(&mut self) -> Option<Crossing> {
         let roots = self.roots.clone();
         let face = |search: &Self, k: usize| search.parts[k].face;
-        // What a face does with itself first: faces side by side take long to tell apart.
+        // What a face does with itself first: faces side by side take long to separate.
         for (k, i) in roots.iter().enumerate() {
             if self.alone(*i).is_err() {
                 return self.found;
@@ -140,13 +156,14 @@ impl<'a> Search<'a> {
 
     /// Largest length of parts that are left as they are.
     fn smallest(&self, of_two: bool) -> f64 {
-        (SMALLEST * self.point).max(self.size * if of_two { SHARE_OF_TWO } else { SHARE })
+        (SEARCH.least_part_tolerances * self.point)
+            .max(self.size * if of_two { SEARCH.least_part_share_of_two } else { SEARCH.least_part_share })
     }
 
     fn look(&mut self, cost: usize) -> Result<(), Ended> {
         job::poll();
         self.looked_at += cost;
-        if self.looked_at > MOST_PAIRS { Err(Ended) } else { Ok(()) }
+        if self.looked_at > SEARCH.max_pairs { Err(Ended) } else { Ok(()) }
     }
 
     /// A part with itself.
@@ -174,12 +191,12 @@ impl<'a> Search<'a> {
         }
         if !beside && crosses(&x.cell, &y.cell) {
             let (face, other) = (x.face, y.face);
-            self.look(SOLVED)?;
+            self.look(SEARCH.pairs_per_solution)?;
             let (x, y) = (&self.parts[i], &self.parts[j]);
             let pair = Pair { a: &self.patches[x.patch], b: &self.patches[y.patch], point: self.point };
             let spot = pair.correct(x.cell.middle(), y.cell.middle(), None);
             if let Some(spot) = spot.and_then(|spot| inside(&pair, &x.cell, &y.cell, spot))
-                && spot.sine > SINE
+                && spot.sine > SEARCH.least_sine
                 && self.is_crossing((face, spot.a), (other, spot.b), spot.p)
             {
                 self.found = Some(Crossing { at: spot.p, faces: (face, other), uv: (spot.a.into(), spot.b.into()) });
@@ -199,7 +216,7 @@ impl<'a> Search<'a> {
     }
 
     /// Whether two parts of a face share places of its border lines, over a seam too.
-    fn beside(&self, x: &Part, y: &Part) -> bool {
+    fn beside(&self, x: &FacePart, y: &FacePart) -> bool {
         let closed = self.faces[x.face].closed();
         let near = |a: (f64, f64), b: (f64, f64)| a.0 <= b.1 + EPSILON && b.0 <= a.1 + EPSILON;
         let touch = |a: (f64, f64), b: (f64, f64), round: bool| {
@@ -234,7 +251,7 @@ impl<'a> Search<'a> {
             let cell = self.strips.cell(face, &self.patches[patch].surface, u, v);
             let (across, along) = self.faces[face].curves_of_a_point();
             self.looked_at += (self.strips.len() - before) * (across + along);
-            self.parts.push(Part { face, patch, cell, halves: None });
+            self.parts.push(FacePart { face, patch, cell, halves: None });
         }
         self.parts[k].halves = Some((at, at + 1));
         self.parts[k].halves
@@ -242,7 +259,7 @@ impl<'a> Search<'a> {
 
     /// Whether a common place of two parts is away from borders and poles, and is not one place with two names.
     fn is_crossing(&self, (a, x): (usize, DVec2), (b, y): (usize, DVec2), p: DVec3) -> bool {
-        let reach = BORDER * self.point;
+        let reach = SEARCH.border_tolerances * self.point;
         let within = |face: usize, uv: DVec2| {
             let surface = &self.faces[face];
             let closed = surface.closed();

@@ -28,19 +28,19 @@ impl Patch {
     }
 
     /// Its border lines: a fixed u or v, or the slant of a triangle.
-    pub fn lines(&self) -> Vec<Line> {
+    pub fn lines(&self) -> Vec<BorderLine> {
         if self.is_triangle() {
-            return vec![Line::U(0.0), Line::V(0.0), Line::Slant];
+            return vec![BorderLine::U(0.0), BorderLine::V(0.0), BorderLine::Slant];
         }
-        vec![Line::U(self.u.0), Line::U(self.u.1), Line::V(self.v.0), Line::V(self.v.1)]
+        vec![BorderLine::U(self.u.0), BorderLine::U(self.u.1), BorderLine::V(self.v.0), BorderLine::V(self.v.1)]
     }
 }
 
 impl Footing for Patch {
     /// Point and derivatives from inside the patch.
     fn jet(&self, uv: DVec2) -> Jet2 {
-        let lean = |x: f64, high: f64| if x >= high { OneSided::Before } else { OneSided::After };
-        self.surface.jet_one_sided(uv.x, uv.y, (lean(uv.x, self.u.1), lean(uv.y, self.v.1)))
+        let side = |x: f64, high: f64| if x >= high { OneSided::Before } else { OneSided::After };
+        self.surface.jet_one_sided(uv.x, uv.y, (side(uv.x, self.u.1), side(uv.y, self.v.1)))
     }
 
     /// The nearest place of the patch.
@@ -76,13 +76,13 @@ impl Footing for Patch {
 
 /// A border of a patch.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Line {
+pub(crate) enum BorderLine {
     U(f64),
     V(f64),
     Slant,
 }
 
-impl Line {
+impl BorderLine {
     /// How far a place is on the inner side, negative outside; `patch` says which side that is.
     pub fn inside(self, patch: &Patch, uv: DVec2) -> f64 {
         match self {

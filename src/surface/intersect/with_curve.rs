@@ -14,10 +14,10 @@ use crate::network::{Chain, meet as meet_chains};
 use crate::surface::closest::nearest::{Nearest, closest};
 use crate::surface::core::surface::Surface;
 use crate::surface::data::kind::Domain;
-use crate::surface::intersect::curve_patch::{Contact, Touch, contacts};
+use crate::surface::intersect::curve_patch::{Contact, CurveTouch, contacts};
 use crate::surface::intersect::sheet::{Patch, Sheet, grounded, patches};
 use crate::surface::rails::side::Side;
-use crate::surface::trims::holes::with_loops;
+use crate::surface::trims::trim::with_loops;
 
 /// A meeting of a curve and a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,7 +28,7 @@ pub struct SurfaceMeeting {
     pub f: f64,
     /// Place on the surface.
     pub uv: (f64, f64),
-    /// Where a stretch that lies on the surface ends.
+    /// Where an overlap that lies on the surface ends.
     pub shared_to: Option<f64>,
 }
 
@@ -41,7 +41,7 @@ pub(crate) fn long(tolerance: &Tolerance, size: f64) -> f64 {
 
 /// All meetings of a curve and surfaces within the tolerance, in order along the curve, each place once.
 ///
-/// A touch is one meeting, a stretch that lies on a surface one with both its ends. Of a trimmed surface only the kept
+/// A touch is one meeting, an overlap that lies on a surface one with both its ends. Of a trimmed surface only the kept
 /// part counts. E413 when the work exceeds its limit.
 pub fn with_curve(chain: &Chain, surfaces: &[Surface], tolerance: &Tolerance) -> Result<Vec<SurfaceMeeting>> {
     let mut all: Vec<SurfaceMeeting> = Vec::new();
@@ -53,7 +53,7 @@ pub fn with_curve(chain: &Chain, surfaces: &[Surface], tolerance: &Tolerance) ->
     let mut out: Vec<SurfaceMeeting> = Vec::with_capacity(all.len());
     for m in all {
         match out.last_mut() {
-            // Faces side by side share the place on their edge, and stretches go on.
+            // Faces side by side share the place on their edge, and overlaps go on.
             Some(last) if m.f <= last.shared_to.unwrap_or(last.f) + 2.0 * near => {
                 if let Some(to) = m.shared_to {
                     last.shared_to = Some(last.shared_to.map_or(to, |f| f.max(to)));
@@ -75,16 +75,16 @@ fn with_one(chain: &Chain, surface: &Surface, tolerance: &Tolerance) -> Result<V
     }
     let length = curve.length();
     let fraction = |t: f64| curve.length_at(t) / length;
-    let (mut stretches, mut points): (Vec<(f64, f64)>, Vec<Touch>) = (Vec::new(), Vec::new());
+    let (mut overlaps, mut points): (Vec<(f64, f64)>, Vec<CurveTouch>) = (Vec::new(), Vec::new());
     for contact in found {
         match contact {
-            Contact::Stretch { t } => stretches.push((fraction(t.0), fraction(t.1))),
-            Contact::Point(touch) => points.push(Touch { t: fraction(touch.t), ..touch }),
+            Contact::Overlap { t } => overlaps.push((fraction(t.0), fraction(t.1))),
+            Contact::Point(touch) => points.push(CurveTouch { t: fraction(touch.t), ..touch }),
         }
     }
     let near = tolerance.point / length;
     let mut out = Vec::new();
-    for (from, to) in kept_stretches(chain, surface, united(stretches, near), tolerance)? {
+    for (from, to) in kept_intervals(chain, surface, united(overlaps, near), tolerance)? {
         let uv = closest(surface, chain.point(from)).uv;
         out.push(SurfaceMeeting { point: chain.point(from), f: from, uv, shared_to: Some(to) });
     }
@@ -114,11 +114,11 @@ fn on_patch(curve: &Curve, patch: Patch, tolerance: &Tolerance) -> Result<Vec<Co
     })
 }
 
-/// Stretches that touch or overlap as one, ascending.
-fn united(mut stretches: Vec<(f64, f64)>, near: f64) -> Vec<(f64, f64)> {
-    stretches.sort_by(|a, b| a.0.total_cmp(&b.0));
+/// Overlaps that touch or share a part as one, ascending.
+fn united(mut overlaps: Vec<(f64, f64)>, near: f64) -> Vec<(f64, f64)> {
+    overlaps.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut out: Vec<(f64, f64)> = Vec::new();
-    for (from, to) in stretches {
+    for (from, to) in overlaps {
         match out.last_mut() {
             Some(last) if from <= last.1 + near => last.1 = last.1.max(to),
             _ => out.push((from, to)),
@@ -128,15 +128,15 @@ fn united(mut stretches: Vec<(f64, f64)>, near: f64) -> Vec<(f64, f64)> {
 }
 
 /// Each place once: the nearest of those that are one meeting.
-fn distinct(mut points: Vec<Touch>, length: f64, tolerance: &Tolerance) -> Vec<Touch> {
+fn distinct(mut points: Vec<CurveTouch>, length: f64, tolerance: &Tolerance) -> Vec<CurveTouch> {
     const SAME: f64 = 4.0;
     points.sort_by(|a, b| a.gap.total_cmp(&b.gap).then(a.t.total_cmp(&b.t)));
-    let mut kept: Vec<Touch> = Vec::new();
+    let mut kept: Vec<CurveTouch> = Vec::new();
     for touch in points {
         // Where the curve leaves the surface slowly all of a long way is within the tolerance.
         let slow = if touch.gap > tolerance.rounding { 2.0 * tolerance.point / touch.sine.max(ROUNDING_SHARE) } else { 0.0 };
         let reach = slow.max(SAME * tolerance.point);
-        let same = |k: &Touch| (k.t - touch.t).abs() * length <= reach && k.p.distance(touch.p) <= reach;
+        let same = |k: &CurveTouch| (k.t - touch.t).abs() * length <= reach && k.p.distance(touch.p) <= reach;
         if !kept.iter().any(same) {
             kept.push(touch);
         }
@@ -144,15 +144,15 @@ fn distinct(mut points: Vec<Touch>, length: f64, tolerance: &Tolerance) -> Vec<T
     kept
 }
 
-/// The parts of stretches that lie in the kept part of a trimmed surface.
-pub(crate) fn kept_stretches(
+/// The parts of intervals of a chain that lie in the kept part of a trimmed surface.
+pub(crate) fn kept_intervals(
     chain: &Chain,
     surface: &Surface,
-    stretches: Vec<(f64, f64)>,
+    intervals: Vec<(f64, f64)>,
     tolerance: &Tolerance,
 ) -> Result<Vec<(f64, f64)>> {
     if surface.domain() != Domain::Loop {
-        return Ok(stretches);
+        return Ok(intervals);
     }
     let mut cuts = Vec::new();
     for k in 0..surface.n_sides() {
@@ -167,7 +167,7 @@ pub(crate) fn kept_stretches(
     let mut out: Vec<(f64, f64)> = Vec::new();
     let near = tolerance.point / chain.length();
     let below = Nearest::new(&surface.untrimmed());
-    for (from, to) in stretches {
+    for (from, to) in intervals {
         let inner = cuts.iter().copied().filter(|f| *f > from + near && *f < to - near);
         let stops: Vec<f64> = std::iter::once(from).chain(inner).chain(std::iter::once(to)).collect();
         for w in stops.windows(2) {

@@ -22,8 +22,8 @@ use crate::surface::intersect::join_curves::{self, STRAIGHT};
 use crate::surface::intersect::pair::Pair;
 use crate::surface::intersect::patch_pair::{Stopped, common};
 use crate::surface::intersect::sheet::{Sheet, patches, widely_grounded};
-use crate::surface::intersect::with_curve::{kept_stretches, long};
-use crate::surface::trims::holes::with_loops;
+use crate::surface::intersect::with_curve::{kept_intervals, long};
+use crate::surface::trims::trim::with_loops;
 
 /// What two sets of surfaces have in common.
 #[derive(Clone, Debug, Default)]
@@ -189,14 +189,14 @@ fn kept_parts(curve: Curve, surfaces: [&Surface; 2], tolerance: &Tolerance) -> R
         return Ok(vec![curve]);
     }
     let chain = Chain::of_curve(&curve);
-    let mut stretches = vec![(0.0, 1.0)];
+    let mut intervals = vec![(0.0, 1.0)];
     for surface in surfaces {
-        stretches = kept_stretches(&chain, surface, stretches, tolerance)?;
+        intervals = kept_intervals(&chain, surface, intervals, tolerance)?;
     }
-    if stretches == [(0.0, 1.0)] {
+    if intervals == [(0.0, 1.0)] {
         return Ok(vec![curve]);
     }
-    let long_enough = stretches.into_iter().filter(|(from, to)| (to - from) * chain.length() > tolerance.point);
+    let long_enough = intervals.into_iter().filter(|(from, to)| (to - from) * chain.length() > tolerance.point);
     long_enough.map(|(from, to)| chain.slice(from, to, tolerance)?.to_curve()).collect()
 }
 

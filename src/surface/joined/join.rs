@@ -6,7 +6,8 @@ use crate::base::origin::Origin;
 use crate::base::quadrature::gauss_legendre;
 use crate::base::tolerance::Tolerance;
 use crate::network::Chain;
-use crate::surface::core::joined::{Joined, Piece, Turn};
+use crate::surface::core::joined::Joined;
+use crate::surface::core::joined_piece::{JoinedPiece, Turn};
 use crate::surface::core::shape::Shape;
 use crate::surface::core::surface::{Parts, Surface};
 use crate::surface::data::jet::unit_normal;
@@ -58,7 +59,7 @@ fn given(surface: &Surface) -> Vec<Surface> {
 
 /// Pieces in a row.
 struct Row {
-    pieces: Vec<Piece>,
+    pieces: Vec<JoinedPiece>,
     across_v: bool,
 }
 
@@ -81,16 +82,16 @@ fn row(all: &[Surface], rims: &[Vec<Rim>], links: &[Link]) -> Result<Row> {
     let across_v = first % 2 == 0;
     let start = Turn { swap: across_v, ..Turn::default() };
     let (near, far) = if across_v { (0, 2) } else { (3, 1) };
-    let walk = |side: usize, ahead: bool, seen: &mut Vec<usize>| -> Vec<Piece> {
+    let walk = |side: usize, ahead: bool, seen: &mut Vec<usize>| -> Vec<JoinedPiece> {
         let (mut found, mut at, mut turn) = (Vec::new(), (0, side), start);
-        let mut before = Piece::new(all[0].clone(), start, 0);
+        let mut before = JoinedPiece::new(all[0].clone(), start, 0);
         while let Some(link) = links.iter().find(|l| l.ends.contains(&at)) {
             let (next, entered) = link.from(at);
             if seen.contains(&next) {
                 break;
             }
             turn = rims::turn(entered, ahead, turn.back_y != link.reversed);
-            let mut piece = Piece::new(all[next].clone(), turn, next);
+            let mut piece = JoinedPiece::new(all[next].clone(), turn, next);
             let (end, begin) = if ahead { (1.0, 0.0) } else { (0.0, 1.0) };
             // A piece whose y begins elsewhere than its border takes the next one along.
             if link.apart || before.shift > 0.0 {
@@ -110,7 +111,7 @@ fn row(all: &[Surface], rims: &[Vec<Rim>], links: &[Link]) -> Result<Row> {
         return Err(apart(all, rims, &seen));
     }
     pieces.reverse();
-    pieces.push(Piece::new(all[0].clone(), start, 0));
+    pieces.push(JoinedPiece::new(all[0].clone(), start, 0));
     pieces.extend(after);
     Ok(Row { pieces, across_v })
 }
@@ -132,10 +133,10 @@ fn apart(all: &[Surface], rims: &[Vec<Rim>], seen: &[usize]) -> Fault {
 }
 
 /// The mean length of lines along x.
-fn length(piece: &Piece) -> f64 {
+fn length(piece: &JoinedPiece) -> f64 {
     let rule = gauss_legendre(ORDER);
-    let leans = (OneSided::After, OneSided::After);
-    let line = |y: f64| rule.iter().map(|(x, w)| 0.5 * w * piece.jet(0.5 + 0.5 * x, y, leans).du.length()).sum::<f64>();
+    let sides = (OneSided::After, OneSided::After);
+    let line = |y: f64| rule.iter().map(|(x, w)| 0.5 * w * piece.jet(0.5 + 0.5 * x, y, sides).du.length()).sum::<f64>();
     (0..LINES).map(|k| line((k as f64 + 0.5) / LINES as f64)).sum::<f64>() / LINES as f64
 }
 
@@ -167,9 +168,9 @@ fn surface(joined: Joined, across_v: bool, origin: Origin, tolerance: &Tolerance
     let closed_x = pieces.len() > 1 && places(&|y| same(point(0.0, y), point(1.0, y)));
     let closed_y = pieces.iter().all(|p| if p.turn.swap { p.surface.closed().0 } else { p.surface.closed().1 });
     // A side that is a point of all pieces, or of the one at the end.
-    let own = |piece: &Piece, k: usize| piece.surface.side(piece.turn.side(k));
+    let own = |piece: &JoinedPiece, k: usize| piece.surface.side(piece.turn.side(k));
     let pole = |k: usize| -> Option<glam::DVec3> {
-        let of: Vec<&Piece> = match k {
+        let of: Vec<&JoinedPiece> = match k {
             1 => pieces.last().into_iter().collect(),
             3 => pieces.first().into_iter().collect(),
             _ => pieces.iter().collect(),

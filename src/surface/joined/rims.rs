@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::base::job;
 use crate::base::tolerance::Tolerance;
-use crate::surface::core::joined::{Piece, Turn, foot, foot_round};
+use crate::surface::core::joined_piece::{JoinedPiece, Turn, foot, foot_round};
 use crate::surface::core::surface::Surface;
 use crate::surface::data::one_sided::OneSided;
 use crate::surface::rails::side::Side;
@@ -17,7 +17,7 @@ pub struct Rim {
     /// v = 0, u = 1, v = 1, u = 0.
     side: usize,
     points: Vec<DVec3>,
-    piece: Piece,
+    piece: JoinedPiece,
     /// The surface closes along it.
     closed: bool,
 }
@@ -64,7 +64,7 @@ impl Rim {
     }
 
     fn of(surface: &Surface, side: usize) -> Self {
-        let piece = Piece::new(surface.clone(), turn(side, true, false), 0);
+        let piece = JoinedPiece::new(surface.clone(), turn(side, true, false), 0);
         let at = |n: usize| piece.jet(0.0, n as f64 / STEPS as f64, (OneSided::After, OneSided::After)).p;
         let closed = if side.is_multiple_of(2) { surface.closed().0 } else { surface.closed().1 };
         Self { side, points: (0..=STEPS).map(at).collect(), piece, closed }
@@ -91,7 +91,7 @@ impl Rim {
         let (reversed, apart) = match (one(a, c) && one(b, d), one(a, d) && one(b, c)) {
             (false, false) if self.closed && other.closed => (self.runs_against(other), true),
             (false, false) => return None,
-            // Closed: a quarter of the way tells.
+            // Closed: a quarter of the way decides.
             (true, true) => {
                 let (p, q) = (self.points[STEPS / 4], [other.points[STEPS / 4], other.points[STEPS - STEPS / 4]]);
                 (p.distance(q[1]) < p.distance(q[0]), false)

@@ -17,7 +17,7 @@ use crate::surface::data::kind::Domain;
 use crate::surface::data::one_sided::OneSided;
 use crate::surface::rails::side::{Border, Side};
 use crate::surface::rails::trim_curve::TrimCurve;
-use crate::surface::trims::trim::{TrimLoop, natural};
+use crate::surface::trims::trim_loop::{TrimLoop, natural};
 
 /// Share of the tolerance within which copies of a border are.
 const SHARE: f64 = 0.125;
@@ -33,8 +33,8 @@ const STEP: f64 = NUDGE;
 pub struct Boundary {
     surface: Surface,
     side: Side,
-    course: TrimCurve,
-    /// The part of the course that it is; of a closed one it may run on beyond 1.
+    trim_curve: TrimCurve,
+    /// The part of the trim curve that it is; of a closed one it may run on beyond 1.
     part: (f64, f64),
 }
 
@@ -78,57 +78,62 @@ pub(crate) fn whole(surface: &Surface, tolerance: &Tolerance) -> Surface {
 }
 
 /// The borders of all loops of a face, loop by loop; `None` for poles and for seams, across which the face goes on.
-pub(crate) fn boundaries(surface: &Surface, walks: &[TrimLoop], tolerance: &Tolerance) -> Vec<Vec<Option<Boundary>>> {
+pub(crate) fn boundaries(surface: &Surface, trim_loops: &[TrimLoop], tolerance: &Tolerance) -> Vec<Vec<Option<Boundary>>> {
     let below = whole(surface, tolerance);
-    let each = |walk: &TrimLoop| {
-        let seams = seams(surface, &below, walk);
+    let each = |trim_loop: &TrimLoop| {
+        let seams = seams(surface, &below, trim_loop);
         let one = |k: usize| {
-            let pole = matches!(walk.borders[k].side, Side::Pole(_));
-            (!pole && !seams[k]).then(|| Boundary::of(&below, walk, k))
+            let pole = matches!(trim_loop.borders[k].side, Side::Pole(_));
+            (!pole && !seams[k]).then(|| Boundary::of(&below, trim_loop, k))
         };
-        (0..walk.borders.len()).map(one).collect()
+        (0..trim_loop.borders.len()).map(one).collect()
     };
-    walks.iter().map(each).collect()
+    trim_loops.iter().map(each).collect()
 }
 
 /// The chains of the borders of a face; neither poles nor seams, across which the face goes on.
 pub(crate) fn border_chains(surface: &Surface, tolerance: &Tolerance) -> Result<Vec<Chain>> {
     let below = whole(surface, tolerance);
     let mut all = Vec::new();
-    for walk in natural(surface, tolerance)? {
-        let seams = seams(surface, &below, &walk);
+    for trim_loop in natural(surface, tolerance)? {
+        let seams = seams(surface, &below, &trim_loop);
         let chain = |(border, seam): (&Border, bool)| match &border.side {
             Side::Chain { chain, .. } if !seam => Some(chain.clone()),
             _ => None,
         };
-        all.extend(walk.borders.iter().zip(seams).filter_map(chain));
+        all.extend(trim_loop.borders.iter().zip(seams).filter_map(chain));
     }
     Ok(all)
 }
 
 /// Which borders of a loop are seams across which the face goes on: its loop runs along both sides of them.
-fn seams(surface: &Surface, below: &Surface, walk: &TrimLoop) -> Vec<bool> {
+fn seams(surface: &Surface, below: &Surface, trim_loop: &TrimLoop) -> Vec<bool> {
     let closed = surface.closed();
-    let on_seam = |k: usize| !matches!(walk.borders[k].side, Side::Pole(_)) && walk.courses[k].is_seam(closed);
-    let middle = |k: usize| Boundary::of(below, walk, k).jet(0.5, false).map(|jet| jet.p);
+    let on_seam = |k: usize| !matches!(trim_loop.borders[k].side, Side::Pole(_)) && trim_loop.trim_curves[k].is_seam(closed);
+    let middle = |k: usize| Boundary::of(below, trim_loop, k).jet(0.5, false).map(|jet| jet.p);
     let near = |j: usize, k: usize| {
         let apart = middle(j).zip(middle(k)).map(|(a, b)| a.distance(b));
         apart.is_some_and(|apart| apart <= BESIDE * surface.hull().diagonal())
     };
-    let n = walk.borders.len();
+    let n = trim_loop.borders.len();
     let partner = |k: usize| (0..n).any(|j| j != k && on_seam(j) && near(j, k));
-    (0..n).map(|k| on_seam(k) && (matches!(walk.borders[k].side, Side::Seam) || partner(k))).collect()
+    (0..n).map(|k| on_seam(k) && (matches!(trim_loop.borders[k].side, Side::Seam) || partner(k))).collect()
 }
 
 impl Boundary {
     /// Border `k` of a loop of the face over a surface.
-    fn of(below: &Surface, walk: &TrimLoop, k: usize) -> Self {
-        Self { surface: below.clone(), side: walk.borders[k].side.clone(), course: walk.courses[k].clone(), part: (0.0, 1.0) }
+    fn of(below: &Surface, trim_loop: &TrimLoop, k: usize) -> Self {
+        Self {
+            surface: below.clone(),
+            side: trim_loop.borders[k].side.clone(),
+            trim_curve: trim_loop.trim_curves[k].clone(),
+            part: (0.0, 1.0),
+        }
     }
 
     /// Parameters along the border, ends included, between which it has no corner.
     pub fn stops(&self) -> Vec<f64> {
-        let inner: Vec<f64> = match (&self.course, &self.side) {
+        let inner: Vec<f64> = match (&self.trim_curve, &self.side) {
             (TrimCurve::Pcurve(pcurve), Side::Chain { chain, .. }) => {
                 let (from, to) = (pcurve.fraction(0.0), pcurve.fraction(1.0));
                 chain_breaks(chain).into_iter().map(|f| (f - from) / (to - from)).collect()
@@ -152,11 +157,11 @@ impl Boundary {
     /// The place at a parameter from 0 to 1; `before`: of the piece that ends there. `None` where nothing is known of it.
     pub fn jet(&self, t: f64, before: bool) -> Option<BoundaryJet> {
         let (uv, p, d1, way) = self.place(t, before)?;
-        let lean = |x: f64| if x < 0.0 { OneSided::Before } else { OneSided::After };
+        let side = |x: f64| if x < 0.0 { OneSided::Before } else { OneSided::After };
         let way = if before { -way } else { way };
-        let leans = (lean(way.x), lean(way.y));
-        let normal = self.surface.normal_lean(uv.x, uv.y, leans);
-        let jet = self.surface.jet_one_sided(uv.x, uv.y, leans);
+        let sides = (side(way.x), side(way.y));
+        let normal = self.surface.normal_one_sided(uv.x, uv.y, sides);
+        let jet = self.surface.jet_one_sided(uv.x, uv.y, sides);
         let along = if before { -way } else { way };
         let turn = match slopes(&jet) {
             Some((nu, nv)) if normal.length_squared() > 0.0 => nu * along.x + nv * along.y,
@@ -189,7 +194,7 @@ impl Boundary {
     /// The point of [`Boundary::jet`] by itself: its foot and the normal there are many times the work.
     pub fn point(&self, t: f64) -> Option<DVec3> {
         let t = self.of_whole(t, false);
-        match (&self.course, &self.side) {
+        match (&self.trim_curve, &self.side) {
             (TrimCurve::Pcurve(pcurve), Side::Chain { chain, .. }) => {
                 let (f, onwards) = (pcurve.fraction(t), pcurve.fraction(1.0) > pcurve.fraction(0.0));
                 Some(if onwards { chain.jet(f).p } else { chain.jet_before(f).p })
@@ -215,7 +220,7 @@ impl Boundary {
 
     /// The same by the parameter of the whole border.
     fn whole_place(&self, t: f64, before: bool) -> Option<(DVec2, DVec3, DVec3, DVec2)> {
-        match (&self.course, &self.side) {
+        match (&self.trim_curve, &self.side) {
             (TrimCurve::Line(a, b), _) => {
                 let (a, b) = (DVec2::from(*a), DVec2::from(*b));
                 let (uv, way) = (a.lerp(b, t), b - a);

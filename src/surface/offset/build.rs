@@ -22,21 +22,22 @@ use crate::surface::offset::boundary::{Boundary, boundaries, whole};
 use crate::surface::offset::exact::{folds, level, rough, swept};
 use crate::surface::rails::side::{Border, Side};
 use crate::surface::rails::trim_curve::{Pcurve, TrimCurve};
-use crate::surface::trims::trim::{TrimLoop, assembled, natural};
+use crate::surface::trims::trim_loop::{TrimLoop, assembled, natural};
 
 /// The offset of a trimmed surface whose surface below has no creases, with the copies of its borders, loop by loop.
 pub(crate) fn trimmed(surface: &Surface, distance: f64, origin: Origin, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
-    let walks = natural(surface, tolerance)?;
+    let trim_loops = natural(surface, tolerance)?;
     let each = |boundary: &Option<Boundary>| boundary.as_ref().map(|boundary| boundary.copy(distance, origin, tolerance)).transpose();
     let copies: Vec<Vec<Option<Chain>>> =
-        boundaries(surface, &walks, tolerance).iter().map(|row| row.iter().map(each).collect::<Result<_>>()).collect::<Result<_>>()?;
-    with_loops(surface, (&walks, &copies), distance, origin, tolerance)
+        boundaries(surface, &trim_loops, tolerance).iter().map(|row| row.iter().map(each).collect::<Result<_>>()).collect::<Result<_>>()?;
+    with_loops(surface, &trim_loops, &copies, distance, origin, tolerance)
 }
 
 /// The same with the copies of its borders at that distance given.
 pub(crate) fn with_loops(
     surface: &Surface,
-    (walks, copies): (&[TrimLoop], &[Vec<Option<Chain>>]),
+    trim_loops: &[TrimLoop],
+    copies: &[Vec<Option<Chain>>],
     distance: f64,
     origin: Origin,
     tolerance: &Tolerance,
@@ -44,20 +45,20 @@ pub(crate) fn with_loops(
     let below = whole(surface, tolerance);
     let (ground, notes) = offset(&below, distance, origin, tolerance)?;
     let ground = ground.untrimmed();
-    let carrier = Carrier { below: &below, ground: &ground, distance, tolerance };
-    let loops: Result<Vec<TrimLoop>> = walks.iter().zip(copies).map(|(walk, row)| carrier.walk(walk, row)).collect();
+    let carrier = LoopOffset { below: &below, ground: &ground, distance, tolerance };
+    let loops: Result<Vec<TrimLoop>> = trim_loops.iter().zip(copies).map(|(trim_loop, row)| carrier.trim_loop(trim_loop, row)).collect();
     Ok((assembled(&ground, loops?, origin)?, notes))
 }
 
 /// A surface and its offset.
-struct Carrier<'a> {
+struct LoopOffset<'a> {
     below: &'a Surface,
     ground: &'a Surface,
     distance: f64,
     tolerance: &'a Tolerance,
 }
 
-impl Carrier<'_> {
+impl LoopOffset<'_> {
     /// The place on the offset above a place of the surface.
     fn place(&self, uv: DVec2) -> DVec2 {
         let p = self.below.point(uv.x, uv.y) + self.below.normal(uv.x, uv.y) * self.distance;
@@ -72,10 +73,10 @@ impl Carrier<'_> {
         found + DVec2::new(turns(closed_u, uv.x, found.x), turns(closed_v, uv.y, found.y))
     }
 
-    fn walk(&self, walk: &TrimLoop, copies: &[Option<Chain>]) -> Result<TrimLoop> {
-        let mut made = TrimLoop { borders: Vec::new(), courses: Vec::new(), chains: Vec::new() };
-        for ((border, course), copy) in walk.borders.iter().zip(&walk.courses).zip(copies) {
-            let places = course.places();
+    fn trim_loop(&self, trim_loop: &TrimLoop, copies: &[Option<Chain>]) -> Result<TrimLoop> {
+        let mut made = TrimLoop { borders: Vec::new(), trim_curves: Vec::new(), chains: Vec::new() };
+        for ((border, trim_curve), copy) in trim_loop.borders.iter().zip(&trim_loop.trim_curves).zip(copies) {
+            let places = trim_curve.places();
             let (first, last) = (places[0], places[places.len() - 1]);
             let Some(chain) = copy else {
                 let (a, b) = (self.place(first), self.place(last));
@@ -84,15 +85,15 @@ impl Carrier<'_> {
                     _ => Side::Seam,
                 };
                 made.borders.push(Border::straight(side));
-                made.courses.push(TrimCurve::Line(a.into(), b.into()));
+                made.trim_curves.push(TrimCurve::Line(a.into(), b.into()));
                 continue;
             };
-            let pcurve = Pcurve::follow(self.ground, (chain, 0.0, 1.0), self.place(first), self.tolerance.point).map_err(|off| {
+            let pcurve = Pcurve::follow(self.ground, chain, (0.0, 1.0), self.place(first), self.tolerance.point).map_err(|off| {
                 let (of, surface) = (chain.origin(), self.ground.origin());
                 BorderFault::LoopOutsideSurface { of, surface, off: off.distance, at: off.at, tolerance: self.tolerance.point }
             })?;
             made.chains.push(chain.clone());
-            made.courses.push(TrimCurve::Pcurve(Arc::new(pcurve.into_poles(self.ground, chain))));
+            made.trim_curves.push(TrimCurve::Pcurve(Arc::new(pcurve.into_poles(self.ground, chain))));
             made.borders.push(Border::chain(chain.clone(), false));
         }
         Ok(made)

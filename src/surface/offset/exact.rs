@@ -53,8 +53,8 @@ fn crease(surface: &Surface, tolerance: &Tolerance) -> Option<(DVec3, f64)> {
     let in_u = us.iter().flat_map(|u| places().map(move |v| (*u, v, true)));
     let in_v = vs.iter().flat_map(|v| places().map(move |u| (u, *v, false)));
     let jump = |(u, v, across_u): (f64, f64, bool)| {
-        let lean = |side: OneSided| if across_u { (side, OneSided::After) } else { (OneSided::After, side) };
-        let normal = |side: OneSided| surface.normal_lean(u, v, lean(side));
+        let sides = |side: OneSided| if across_u { (side, OneSided::After) } else { (OneSided::After, side) };
+        let normal = |side: OneSided| surface.normal_one_sided(u, v, sides(side));
         (surface.point(u, v), math::angle_between(normal(OneSided::Before), normal(OneSided::After)))
     };
     let most = in_u.chain(in_v).map(jump).fold((DVec3::ZERO, 0.0), |most, next| if next.1 > most.1 { next } else { most });
@@ -76,16 +76,16 @@ fn tip(surface: &Surface, tolerance: &Tolerance) -> Option<DVec3> {
     };
     (0..4).find_map(|k| {
         let Side::Pole(p) = surface.side(k) else { return None };
-        let ((u, v), lean) = (place(k, 0.5, 0.0), (OneSided::After, OneSided::After));
-        let upright = surface.normal_lean(u, v, lean);
-        let enclosure = |inward: f64| {
+        let ((u, v), side) = (place(k, 0.5, 0.0), (OneSided::After, OneSided::After));
+        let upright = surface.normal_one_sided(u, v, side);
+        let most_off = |inward: f64| {
             let normal = |i: usize| {
                 let (u, v) = place(k, (i as f64 + 0.5) / AROUND as f64, inward);
                 math::angle_between(surface.normal(u, v), upright)
             };
             (0..AROUND).map(normal).fold(0.0, f64::max)
         };
-        let (far, near) = (enclosure(POLE_STEP), enclosure(NEARER * POLE_STEP));
+        let (far, near) = (most_off(POLE_STEP), most_off(NEARER * POLE_STEP));
         (near > tolerance.angle && near > 0.5 * far).then_some(p)
     })
 }
@@ -194,7 +194,7 @@ pub(crate) fn parts_of(surface: &Surface, origin: Origin, tolerance: &Tolerance)
 /// The offset of a sweep whose profile lies in a plane that holds its normals; none for other surfaces.
 pub(crate) fn swept(surface: &Surface, distance: f64, origin: Origin, tolerance: &Tolerance) -> Result<Option<Surface>> {
     let Some((profile, path)) = swept_by(surface)? else { return Ok(None) };
-    let moved = moved_profile((&profile, path), distance, origin, tolerance)?;
+    let moved = moved_profile(&profile, path, distance, origin, tolerance)?;
     let made = match path {
         Path::Straight { by } => extrude(&moved, by, origin, tolerance)?,
         Path::Turn { about, axis, angle } => revolve(&moved, &Axis { about, direction: axis }, angle, origin, tolerance)?,
@@ -203,7 +203,7 @@ pub(crate) fn swept(surface: &Surface, distance: f64, origin: Origin, tolerance:
 }
 
 /// The profile of the offset of a sweep.
-pub(crate) fn moved_profile((profile, path): (&Profile, Path), distance: f64, origin: Origin, tolerance: &Tolerance) -> Result<Chain> {
+pub(crate) fn moved_profile(profile: &Profile, path: Path, distance: f64, origin: Origin, tolerance: &Tolerance) -> Result<Chain> {
     let moved = if distance == 0.0 {
         profile.curve.clone()
     } else {
@@ -212,7 +212,7 @@ pub(crate) fn moved_profile((profile, path): (&Profile, Path), distance: f64, or
     let moved = Chain::of_curve(&moved);
     match path {
         Path::Straight { .. } => Ok(moved),
-        Path::Turn { about, axis, .. } => beside_axis((&profile.curve, &moved), &Axis { about, direction: axis }, distance, tolerance),
+        Path::Turn { about, axis, .. } => beside_axis(&profile.curve, &moved, &Axis { about, direction: axis }, distance, tolerance),
     }
 }
 

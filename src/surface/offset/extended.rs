@@ -40,7 +40,7 @@ pub(crate) fn longer(face: &Surface, distance: f64, reach: f64, origin: Origin, 
     let below = whole(face, tolerance);
     if let Some((profile, path)) = swept_by(&below)? {
         let flipped = below.parts().flipped;
-        let moved = moved_profile((&profile, path), distance, origin, tolerance)?;
+        let moved = moved_profile(&profile, path, distance, origin, tolerance)?;
         let made = match path {
             Path::Straight { by } => {
                 let way = by.normalize_or_zero() * reach;

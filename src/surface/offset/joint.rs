@@ -14,8 +14,8 @@ use crate::network::Chain;
 use crate::surface::core::surface::Surface;
 use crate::surface::faults::{WallEdge, WallFault};
 use crate::surface::offset::boundary::{Boundary, boundaries};
-use crate::surface::trims::holes::with_loops;
-use crate::surface::trims::trim::natural;
+use crate::surface::trims::trim::with_loops;
+use crate::surface::trims::trim_loop::natural;
 
 /// Borders that are no edge of two faces and yet everywhere within so many tolerances are not meant to be two.
 const BESIDE: f64 = 100.0;
@@ -52,14 +52,14 @@ pub(crate) struct Joint {
 }
 
 /// Faces with their borders, all sides turned alike.
-pub(crate) struct Sheet {
+pub(crate) struct FaceSheet {
     pub faces: Vec<Surface>,
     /// The borders of each face.
     pub boundaries: Vec<Vec<Boundary>>,
     pub joints: Vec<Joint>,
 }
 
-impl Sheet {
+impl FaceSheet {
     /// The edges of faces; of neighbours that are turned differently the later one is flipped.
     ///
     /// Fails with E671 where borders of two faces are no one edge and yet nowhere farther apart than `near`, where an edge is shared in part, by more than two faces, or where it is sharp in part.

@@ -18,7 +18,7 @@ const PLACES: usize = 64;
 /// runs on straight to it.
 ///
 /// Fails with E306 where the distance takes it over the axis.
-pub(crate) fn beside_axis((profile, moved): (&Curve, &Chain), axis: &Axis, distance: f64, tolerance: &Tolerance) -> Result<Chain> {
+pub(crate) fn beside_axis(profile: &Curve, moved: &Chain, axis: &Axis, distance: f64, tolerance: &Tolerance) -> Result<Chain> {
     let out = |p: DVec3| (p - axis.about).reject_from_normalized(axis.direction);
     let far =
         profile.points_along(PLACES).into_iter().map(out).fold(DVec3::ZERO, |most, p| if p.length() > most.length() { p } else { most });
@@ -27,7 +27,7 @@ pub(crate) fn beside_axis((profile, moved): (&Curve, &Chain), axis: &Axis, dista
     let mut made = moved.clone();
     for (last, end) in [(false, profile.start()), (true, profile.end())] {
         if on_axis(end) {
-            made = to_axis(&made, last, (axis, outward), tolerance)?;
+            made = to_axis(&made, last, axis, outward, tolerance)?;
         }
     }
     let lowest = (0..=PLACES).map(|k| made.point(k as f64 / PLACES as f64));
@@ -43,7 +43,7 @@ pub(crate) fn beside_axis((profile, moved): (&Curve, &Chain), axis: &Axis, dista
 }
 
 /// A chain that ends on the axis: cut there, or longer by a straight line.
-fn to_axis(chain: &Chain, last: bool, (axis, outward): (&Axis, DVec3), tolerance: &Tolerance) -> Result<Chain> {
+fn to_axis(chain: &Chain, last: bool, axis: &Axis, outward: DVec3, tolerance: &Tolerance) -> Result<Chain> {
     let end = if last { chain.end() } else { chain.start() };
     let height = (end - axis.about).dot(outward);
     if height.abs() <= tolerance.point {

@@ -17,10 +17,10 @@ use crate::surface::faults::{WallEdge, WallFault};
 use crate::surface::intersect::with_surfaces::with_surfaces;
 use crate::surface::offset::boundary::{self, whole};
 use crate::surface::offset::extended::longer;
-use crate::surface::offset::joint::{self, Bend, Joint, Sheet, Use};
+use crate::surface::offset::joint::{self, Bend, FaceSheet, Joint, Use};
 use crate::surface::rails::side::Side;
 use crate::surface::trims::divide::divide;
-use crate::surface::trims::project::{Way, carried};
+use crate::surface::trims::project::{Way, project};
 
 /// Faces run on beyond their borders by this many distances, or so many times as far as moved faces meet from where the faces do.
 const REACH: f64 = 4.0;
@@ -44,7 +44,7 @@ pub(crate) struct Layer {
 
 /// A side in the making.
 struct Making<'a> {
-    sheet: &'a Sheet,
+    sheet: &'a FaceSheet,
     distance: f64,
     origin: Origin,
     tolerance: &'a Tolerance,
@@ -57,7 +57,7 @@ struct Making<'a> {
 }
 
 /// The faces of a sheet at a distance; E671 where those of neighbours do not meet.
-pub(crate) fn layer(sheet: &Sheet, distance: f64, origin: Origin, tolerance: &Tolerance) -> Result<Layer> {
+pub(crate) fn layer(sheet: &FaceSheet, distance: f64, origin: Origin, tolerance: &Tolerance) -> Result<Layer> {
     if distance == 0.0 {
         return Ok(Layer {
             faces: sheet.faces.iter().map(|face| face.with_origin(origin)).collect(),
@@ -150,7 +150,7 @@ impl Making<'_> {
                     continue;
                 }
                 let way = Chain::of_curve(&line(from.extend(0.0), to.extend(0.0), self.origin)?);
-                Chain::of_curve(&carried(ground, &way, Way::Parameters, self.origin, self.tolerance)?)
+                Chain::of_curve(&project(ground, &way, Way::Parameters, self.origin, self.tolerance)?)
             };
             if last { parts.push(more) } else { parts.insert(0, more.reversed()) }
         }
@@ -210,7 +210,7 @@ impl Making<'_> {
         let poles = spline.poles.iter().enumerate().map(|(i, q)| pole((i, q)).extend(q.w)).collect();
         let moved = boundary::curve(crate::geometry::Nurbs::new(spline.degree, spline.knots.clone(), poles), self.origin);
         let ground = &self.longer[face];
-        let on = carried(ground, &moved, Way::Nearest, self.origin, self.tolerance)?;
+        let on = project(ground, &moved, Way::Nearest, self.origin, self.tolerance)?;
         Ok(Chain::of_curve(&on))
     }
 
@@ -339,7 +339,7 @@ impl Making<'_> {
         let room = |p: &DVec3| -> Option<f64> {
             let feet = sides.iter().map(|side| (side, side.chain.closest(*p)));
             let (side, (f, q, off)) = feet.min_by(|x, y| x.1.2.total_cmp(&y.1.2))?;
-            // The nearest edge tells the side; a seam has the face on both.
+            // The nearest edge decides the side; a seam has the face on both.
             let seam = sides.iter().filter(|other| other.joint == side.joint).count() > 1;
             (seam || side.inside(f, *p - q)).then_some(off)
         };

@@ -17,12 +17,12 @@ use crate::surface::faults::{WallEdge, WallFault};
 use crate::surface::offset::boundary::{Boundary, boundaries, curve};
 use crate::surface::offset::build::{offset, with_loops};
 use crate::surface::offset::exact::{is_exact, parts_of};
-use crate::surface::offset::joint::{Bend, Sheet};
+use crate::surface::offset::joint::{Bend, FaceSheet};
 use crate::surface::offset::shell::layer;
 use crate::surface::rails::side::{Side, between};
 use crate::surface::shapes::nurbs::NurbsSurface;
-use crate::surface::trims::holes;
-use crate::surface::trims::trim::natural;
+use crate::surface::trims::trim::trim;
+use crate::surface::trims::trim_loop::natural;
 
 /// Copies of the borders of a face, loop by loop; none where it has none.
 type Copies = Vec<Vec<Option<Chain>>>;
@@ -39,12 +39,12 @@ pub fn thicken(surface: &Surface, (below, above): (f64, f64), origin: Origin, to
         let rims = ruled_rims((&inner, &outer), origin, tolerance, &mut notes)?;
         return Ok(([outer, inner.flipped()].into_iter().chain(rims).collect(), notes));
     }
-    let walks = natural(surface, tolerance)?;
+    let trim_loops = natural(surface, tolerance)?;
     let (mut low, mut high, mut rims): (Copies, Copies, Vec<Surface>) = (Vec::new(), Vec::new(), Vec::new());
-    for row in boundaries(surface, &walks, tolerance) {
+    for row in boundaries(surface, &trim_loops, tolerance) {
         let made =
             row.iter().map(|boundary| boundary.as_ref().map(|boundary| rim(boundary, (below, above), origin, tolerance)).transpose());
-        let made: Vec<Option<Rim>> = made.collect::<Result<_>>()?;
+        let made: Vec<Option<RimFace>> = made.collect::<Result<_>>()?;
         low.push(made.iter().map(|rim| rim.as_ref().map(|rim| rim.low.clone())).collect());
         high.push(made.iter().map(|rim| rim.as_ref().map(|rim| rim.high.clone())).collect());
         rims.extend(made.into_iter().flatten().map(|rim| rim.face));
@@ -53,7 +53,7 @@ pub fn thicken(surface: &Surface, (below, above): (f64, f64), origin: Origin, to
         if distance == 0.0 || surface.parts().trim.is_none() {
             return moved(surface, distance, origin, tolerance);
         }
-        with_loops(surface, (&walks, copies), distance, origin, tolerance)
+        with_loops(surface, &trim_loops, copies, distance, origin, tolerance)
     };
     let ((inner, mut notes), (outer, more)) = (side(below, &low)?, side(above, &high)?);
     notes.extend(more);
@@ -69,14 +69,14 @@ fn moved(surface: &Surface, distance: f64, origin: Origin, tolerance: &Tolerance
 }
 
 /// What stands along a border, with its two long sides.
-struct Rim {
+struct RimFace {
     low: Chain,
     high: Chain,
     face: Surface,
 }
 
 /// The strip along the normals of a face beside its border.
-fn rim(boundary: &Boundary, (below, above): (f64, f64), origin: Origin, tolerance: &Tolerance) -> Result<Rim> {
+fn rim(boundary: &Boundary, (below, above): (f64, f64), origin: Origin, tolerance: &Tolerance) -> Result<RimFace> {
     let [low, high] = boundary.copies([below, above], origin, tolerance)?;
     let n = low.poles.len();
     let net = NurbsSurface {
@@ -86,7 +86,7 @@ fn rim(boundary: &Boundary, (below, above): (f64, f64), origin: Origin, toleranc
         counts: (n, 2),
     };
     let face = net.surface(SurfaceKind::Ruled, origin, tolerance);
-    Ok(Rim { low: curve(low, origin), high: curve(high, origin), face })
+    Ok(RimFace { low: curve(low, origin), high: curve(high, origin), face })
 }
 
 /// Ruled faces between the borders of two faces that have the same ones, named by curves.
@@ -126,10 +126,10 @@ fn flat_rim(low: &Chain, high: &Chain, origin: Origin, tolerance: &Tolerance) ->
     let closed = low.is_closed(tolerance) && high.is_closed(tolerance);
     let made = if closed {
         plane_face::bounded(std::slice::from_ref(high), origin, tolerance)
-            .and_then(|(face, _)| holes::trim(&face, &[], &[vec![low.clone()]], origin, tolerance))
+            .and_then(|(face, _)| trim(&face, &[], &[vec![low.clone()]], origin, tolerance))
             .or_else(|_| {
                 plane_face::bounded(std::slice::from_ref(low), origin, tolerance)
-                    .and_then(|(face, _)| holes::trim(&face, &[], &[vec![high.clone()]], origin, tolerance))
+                    .and_then(|(face, _)| trim(&face, &[], &[vec![high.clone()]], origin, tolerance))
             })
     } else {
         let ends = [line(low.start(), high.start(), origin)?, line(low.end(), high.end(), origin)?].map(|c| Chain::of_curve(&c));
@@ -170,9 +170,9 @@ pub fn thicken_all(
         let face = if turned(faces, closed) { face.flipped() } else { face.clone() };
         return thicken(&face, (below, above), origin, tolerance);
     }
-    let mut sheet = Sheet::new(faces, near, origin, tolerance)?;
+    let mut sheet = FaceSheet::new(faces, near, origin, tolerance)?;
     let closed = sheet.joints.iter().all(|joint| joint.bend != Bend::Free);
-    // Which side of one piece is that of another one is not told by either.
+    // Which side of one piece is that of another one follows from neither.
     if below != -above
         && let Some(second) = sheet.second_piece()
     {
@@ -182,7 +182,7 @@ pub fn thicken_all(
     }
     if turned(&sheet.faces, closed) {
         let other: Vec<Surface> = sheet.faces.iter().map(Surface::flipped).collect();
-        sheet = Sheet::new(&other, near, origin, tolerance)?;
+        sheet = FaceSheet::new(&other, near, origin, tolerance)?;
     }
     let (inner, outer) = (layer(&sheet, below, origin, tolerance)?, layer(&sheet, above, origin, tolerance)?);
     let mut notes = [inner.notes, outer.notes].concat();

@@ -1,18 +1,18 @@
-//! A function of one parameter over a stretch, known by its middle and by bounds of its derivatives.
+//! A function of one parameter over an interval, known by its middle and by bounds of its derivatives.
 
 use crate::base::range::{Interval, Interval3};
 use crate::geometry::Jet;
 
-/// Taylor's formula about the middle, with what the derivatives may be over the whole stretch.
+/// Taylor's formula about the middle, with what the derivatives may be over the whole interval.
 #[derive(Clone, Copy, Debug)]
 pub struct Line {
-    /// Half the width of the stretch.
+    /// Half the width of the interval.
     pub half: f64,
     /// Value and derivatives in the middle.
     pub mid: Jet,
     /// First derivative.
     pub d1: Interval3,
-    /// Second derivative; vast where there is a cusp. Jumps of the first derivative count as what bends as far.
+    /// Second derivative; unbounded where there is a cusp. Jumps of the first derivative count as what bends as far.
     pub d2: Interval3,
 }
 
@@ -31,7 +31,7 @@ impl Line {
         by_bend.intersection(by_slope)
     }
 
-    /// Σ of fixed multiples of lines over the same stretch.
+    /// Σ of fixed multiples of lines over the same interval.
     pub fn sum(terms: impl Iterator<Item = (f64, Self)>) -> Self {
         let zero = Self { half: 0.0, mid: Jet::default(), d1: Interval3::default(), d2: Interval3::default() };
         let whole = terms.fold(zero, |s, (w, l)| Self {
@@ -58,7 +58,7 @@ impl Line {
     }
 }
 
-/// Weights of a sum over one stretch: their values in its middle and what they may be anywhere in it.
+/// Weights of a sum over one interval: their values in its middle and what they may be anywhere in it.
 #[derive(Clone, Copy, Debug)]
 pub struct Shares<'a> {
     /// Value and derivatives of each.
@@ -67,7 +67,7 @@ pub struct Shares<'a> {
     pub shares: usize,
     /// Their third derivatives, where these are numbers: the weights are cubics.
     pub thirds: Option<&'a [f64]>,
-    /// Half the width of the stretch.
+    /// Half the width of the interval.
     pub half: f64,
 }
 

@@ -31,8 +31,8 @@ crate::content!(Mixed { parts });
 crate::content!(Part { by, rail, onto });
 
 impl Part {
-    fn jet(&self, x: f64, lean: OneSided) -> Jet {
-        let jet = self.rail.jet(x, lean);
+    fn jet(&self, x: f64, side: OneSided) -> Jet {
+        let jet = self.rail.jet(x, side);
         let Some((at, n)) = self.onto else { return jet };
         let flat = |v: DVec3| v - n * n.dot(v);
         Jet { p: at + flat(jet.p - at), d1: flat(jet.d1), d2: flat(jet.d2) }
@@ -57,9 +57,9 @@ impl Mixed {
     }
 
     /// Point and derivatives.
-    pub fn jet(&self, x: f64, lean: OneSided) -> Jet {
+    pub fn jet(&self, x: f64, side: OneSided) -> Jet {
         self.parts.iter().fold(Jet::default(), |sum, part| {
-            let jet = part.jet(x, lean);
+            let jet = part.jet(x, side);
             Jet { p: sum.p + jet.p * part.by, d1: sum.d1 + jet.d1 * part.by, d2: sum.d2 + jet.d2 * part.by }
         })
     }

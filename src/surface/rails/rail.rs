@@ -61,19 +61,19 @@ impl Rail {
     }
 
     /// Point and derivatives with respect to the surface parameter.
-    pub fn jet(&self, x: f64, lean: OneSided) -> Jet {
+    pub fn jet(&self, x: f64, side: OneSided) -> Jet {
         match self {
             Self::Point(p) => Jet { p: *p, ..Jet::default() },
-            Self::Mixed(sum) => sum.jet(x, lean),
+            Self::Mixed(sum) => sum.jet(x, side),
             #[cfg(test)]
             Self::Formula { .. } => Jet { p: self.point(x), ..Jet::default() },
             Self::Chain { chain, map, kinks } => {
-                let [mut f, d1, d2] = map.at(x, lean == OneSided::Before);
+                let [mut f, d1, d2] = map.at(x, side == OneSided::Before);
                 // A kink line is the image of the kink up to rounding: hit the kink itself, or the side would be chance.
                 if let Some((_, at)) = kinks.iter().find(|(line, _)| (*line - x).abs() <= EPSILON) {
                     f = *at;
                 }
-                let before = (lean == OneSided::Before) != map.falls();
+                let before = (side == OneSided::Before) != map.falls();
                 let jet = if before { chain.jet_before(f) } else { chain.jet(f) };
                 Jet { p: jet.p, d1: jet.d1 * d1, d2: jet.d2 * (d1 * d1) + jet.d1 * d2 }
             }

@@ -7,7 +7,7 @@ use crate::network::Chain;
 
 /// Places at which a ring is looked at.
 pub const PLACES: usize = 32;
-/// Products of cosines below which rings lie beside each other, not behind: then their normals tell which way they run.
+/// Products of cosines below which rings lie beside each other, not behind: then their normals decide which way they run.
 const BESIDE: f64 = 0.01;
 
 /// A closed curve from outside.
@@ -36,7 +36,7 @@ impl Ring {
         Self { normal: -self.normal, ..self }
     }
 
-    /// Whether the next ring of a tube runs the other way round; `None` where nothing tells.
+    /// Whether the next ring of a tube runs the other way round; `None` where nothing decides.
     ///
     /// A tube passes both from the same side, however it bends between them. Rings in about one plane run alike where their normals
     /// do.

@@ -23,9 +23,9 @@ pub enum Side {
     },
     /// The side is one point.
     Pole(DVec3),
-    /// The side is joined to the opposite one and no chain carries it (closed surface).
+    /// The side is joined to the opposite one and no chain runs along it (closed surface).
     Seam,
-    /// A free border that no chain carries.
+    /// A free border without a chain.
     Free,
 }
 

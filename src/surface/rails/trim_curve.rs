@@ -8,8 +8,8 @@ use crate::base::tolerance::NUDGE;
 
 /// How much more than at the stations beside it a way may bend between two of them.
 const BENT: f64 = 4.0;
-/// Steps of a stretch that has a box of its own.
-const STRETCH: usize = 16;
+/// Steps of a piece that has a box of its own.
+const PIECE_STEPS: usize = 16;
 
 /// What a border of a trimmed surface is in (u, v), from its start to its end in the loop's direction.
 #[derive(Clone, Debug)]
@@ -91,7 +91,7 @@ pub(crate) struct Pcurve {
     at: Vec<(f64, DVec2)>,
     /// The largest distance from the surface met on the way, model units.
     pub off: f64,
-    /// Boxes about stretches of [`STRETCH`] steps, made when first asked for.
+    /// Boxes about pieces of [`PIECE_STEPS`] steps, made when first asked for.
     boxes: OnceLock<Box<[(DVec2, DVec2)]>>,
 }
 
@@ -100,18 +100,18 @@ impl Pcurve {
         Self { at, off, boxes: OnceLock::new() }
     }
 
-    /// Stretches of the way, each with a box that holds it: about its stations, and farther by its longest step.
-    pub fn stretches(&self) -> impl Iterator<Item = (&[(f64, DVec2)], (DVec2, DVec2))> {
-        let stretch = |k: usize| &self.at[k * STRETCH..(k * STRETCH + STRETCH + 1).min(self.at.len())];
+    /// Pieces of the way, each with a box that holds it: about its stations, and farther by its longest step.
+    pub fn boxed_pieces(&self) -> impl Iterator<Item = (&[(f64, DVec2)], (DVec2, DVec2))> {
+        let piece = |k: usize| &self.at[k * PIECE_STEPS..(k * PIECE_STEPS + PIECE_STEPS + 1).min(self.at.len())];
         let boxed = |at: &[(f64, DVec2)]| {
             let step = at.windows(2).map(|w| w[0].1.distance(w[1].1)).fold(0.0, f64::max);
             let low = at.iter().fold(DVec2::INFINITY, |low, s| low.min(s.1));
             let high = at.iter().fold(DVec2::NEG_INFINITY, |high, s| high.max(s.1));
             (low - step, high + step)
         };
-        let n = (self.at.len() - 1).div_ceil(STRETCH);
-        let boxes = self.boxes.get_or_init(|| (0..n).map(|k| boxed(stretch(k))).collect());
-        boxes.iter().enumerate().map(move |(k, held)| (stretch(k), *held))
+        let n = (self.at.len() - 1).div_ceil(PIECE_STEPS);
+        let boxes = self.boxes.get_or_init(|| (0..n).map(|k| boxed(piece(k))).collect());
+        boxes.iter().enumerate().map(move |(k, held)| (piece(k), *held))
     }
 
     /// The same in the other direction.

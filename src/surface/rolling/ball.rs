@@ -12,7 +12,7 @@ use crate::surface::core::surface::Surface;
 use crate::surface::data::jet::unit_normal;
 use crate::surface::faults::{BlendFault, NoBlend};
 use crate::surface::rolling::face::Face;
-use crate::surface::rolling::station::{Place, Station, station};
+use crate::surface::rolling::station::{BallStation, Place, station};
 
 /// Places along the edge at which a radius is tried.
 pub(crate) const STARTS: usize = 16;
@@ -22,7 +22,7 @@ const GROWTH: usize = 8;
 const PROBE: f64 = 1.0 / 8192.0;
 
 /// A place of the edge from which the ball starts.
-pub(crate) struct Start {
+pub(crate) struct BallStart {
     pub at: DVec3,
     along: DVec3,
     uv: [DVec2; 2],
@@ -43,7 +43,7 @@ pub(crate) struct Ball {
     pub closed: bool,
     pub origins: [Origin; 2],
     pub tolerance: Tolerance,
-    pub starts: Vec<Start>,
+    pub starts: Vec<BallStart>,
 }
 
 impl Ball {
@@ -64,7 +64,7 @@ impl Ball {
         BlendFault::NoEdge { a: self.origins[0], b: self.origins[1], why }.into()
     }
 
-    fn start(&self, f: f64) -> Result<Start> {
+    fn start(&self, f: f64) -> Result<BallStart> {
         let jet = if f == 1.0 { self.edge.jet_before(f) } else { self.edge.jet(f) };
         let uv = [self.faces[0].uv_of(jet.p), self.faces[1].uv_of(jet.p)];
         let tangent = || self.fault(NoBlend::Tangent { at: jet.p });
@@ -73,7 +73,7 @@ impl Ball {
         // The edge is within the tolerance of both, its direction less sure: both normals know it.
         let across = math::unit(normals[0].cross(normals[1]), NUDGE).ok_or_else(tangent)?;
         let along = across * across.dot(jet.d1).signum();
-        Ok(Start { at: jet.p, along, uv, out: normals.map(|n| n.cross(along).normalize_or_zero()) })
+        Ok(BallStart { at: jet.p, along, uv, out: normals.map(|n| n.cross(along).normalize_or_zero()) })
     }
 
     /// Turns the directions away from the edge to where the ball is, and finds its side of each surface: where a surface runs on
@@ -92,8 +92,8 @@ impl Ball {
                 ([false, true], _) => Ok(-1.0),
                 (_, Some((start, to))) => {
                     let ahead = to.dot(start.out[k]);
-                    let tells = ahead.abs() > self.tolerance.point;
-                    tells
+                    let decides = ahead.abs() > self.tolerance.point;
+                    decides
                         .then_some(ahead.signum())
                         .ok_or_else(|| self.fault(NoBlend::KeepOnEdge { surface: self.origins[k], at: start.at }))
                 }
@@ -128,7 +128,7 @@ impl Ball {
     }
 
     /// The ball beside a place of the edge, grown step by step.
-    pub fn grown(&self, start: &Start, radius: f64) -> Option<Station> {
+    pub fn grown(&self, start: &BallStart, radius: f64) -> Option<BallStation> {
         let half = 0.5 * math::angle_between(start.out[0], start.out[1]);
         let first = radius / GROWTH as f64 / math::tan(half);
         let step = |k: usize| {
@@ -149,30 +149,30 @@ impl Ball {
     }
 
     /// The ball whose centre is in a plane.
-    pub fn station(&self, radius: f64, plane: (DVec3, DVec3), guess: &Guess) -> Option<Station> {
+    pub fn station(&self, radius: f64, plane: (DVec3, DVec3), guess: &Guess) -> Option<BallStation> {
         self.at(radius, &Place::Plane(plane.0, plane.1), guess)
     }
 
     /// The ball at a place.
-    pub fn at(&self, radius: f64, place: &Place, guess: &Guess) -> Option<Station> {
+    pub fn at(&self, radius: f64, place: &Place, guess: &Guess) -> Option<BallStation> {
         let from = |uv: [DVec2; 2]| station(&self.faces, radius, place, uv, self.tolerance.rounding);
         // A step in (u, v) says little beside a pole: there the points say more.
         from(guess.uv).or_else(|| from([0, 1].map(|k: usize| self.faces[k].uv_of(guess.points[k]))))
     }
 
     /// Whether it touches both surfaces inside their kept parts.
-    pub fn holds(&self, station: &Station) -> bool {
+    pub fn holds(&self, station: &BallStation) -> bool {
         (0..2).all(|k| self.faces[k].distance(station.feet[k]) <= self.tolerance.point)
     }
 
     /// Whether something is left of both surfaces beyond where it touches them.
-    pub fn leaves(&self, station: &Station) -> bool {
+    pub fn leaves(&self, station: &BallStation) -> bool {
         let step = LEFT * self.tolerance.point;
         self.at_end(station) || (0..2).all(|k| self.faces[k].runs_on(station.feet[k], self.away(station, k), step))
     }
 
     /// Whether a ball reaches into no surface, and its feet run forwards.
-    pub fn fits(&self, station: &Station, radius: f64) -> bool {
+    pub fn fits(&self, station: &BallStation, radius: f64) -> bool {
         (0..2).all(|k| {
             let forward = station.rates[k].dot(station.way) > NUDGE;
             forward && self.faces[k].distance(station.center) >= radius - self.tolerance.point
@@ -180,20 +180,20 @@ impl Ball {
     }
 
     /// Unit direction on a surface away from the edge, where the ball touches.
-    pub fn away(&self, station: &Station, k: usize) -> DVec3 {
+    pub fn away(&self, station: &BallStation, k: usize) -> DVec3 {
         let normal = station.center - station.feet[k];
         let across = station.feet[k] - station.feet[1 - k];
         across.reject_from(normal).normalize_or_zero()
     }
 
     /// Whether it is the ball beside an end of an open edge.
-    fn at_end(&self, station: &Station) -> bool {
+    fn at_end(&self, station: &BallStation) -> bool {
         let ends = [&self.starts[0], &self.starts[STARTS]];
         !self.closed && ends.into_iter().any(|s| (station.center - s.at).dot(s.along).abs() <= self.tolerance.point)
     }
 
     /// More balls beyond the ends of an open edge, until they touch inside no surface.
-    pub fn run_out(&self, radius: f64, stations: &mut Vec<Station>) {
+    pub fn run_out(&self, radius: f64, stations: &mut Vec<BallStation>) {
         const MOST: usize = 16;
         for _ in 0..2 {
             for _ in 0..MOST {
@@ -211,7 +211,7 @@ impl Ball {
                 stations.push(next);
             }
             stations.reverse();
-            stations.iter_mut().for_each(Station::turn);
+            stations.iter_mut().for_each(BallStation::turn);
         }
     }
 }

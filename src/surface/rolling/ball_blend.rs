@@ -42,7 +42,7 @@ pub fn rolling([a, b]: [&Surface; 2], radius: f64, keep: Option<DVec3>, origin: 
     made(stations, radius).map_err(|fault| {
         // What is lost on the way may be too large for it.
         if let Some(CurveFault::NotConverged { at, .. }) = fault.of() {
-            return largest::above_made(&ball, (radius, *at), origin, is_made).unwrap_or(fault);
+            return largest::above_made(&ball, radius, *at, origin, is_made).unwrap_or(fault);
         }
         fault
     })

@@ -17,7 +17,7 @@ use crate::surface::data::kind::SurfaceKind;
 use crate::surface::data::one_sided::OneSided;
 use crate::surface::rolling::ball::{Ball, Guess};
 use crate::surface::rolling::breaks::{with_breaks, with_middles, with_sides};
-use crate::surface::rolling::station::Station;
+use crate::surface::rolling::station::BallStation;
 use crate::surface::shapes::nurbs::NurbsSurface;
 use crate::surface::swept::extrude::extrude;
 use crate::surface::swept::revolve::{Axis, revolve};
@@ -36,7 +36,7 @@ pub(crate) struct Roll {
 }
 
 /// The surface through the balls at some stations, and at more of them where it needs more.
-pub(crate) fn rolled(ball: &Ball, radius: f64, stations: Vec<Station>, origin: Origin) -> Result<Roll> {
+pub(crate) fn rolled(ball: &Ball, radius: f64, stations: Vec<BallStation>, origin: Origin) -> Result<Roll> {
     let stations = turned(ball, stations);
     let (tolerance, at) = (&ball.tolerance, stations[0].center);
     let pieces = with_breaks(ball, radius, &stations);
@@ -61,30 +61,30 @@ pub(crate) fn rolled(ball: &Ball, radius: f64, stations: Vec<Station>, origin: O
 }
 
 /// The stations in the order in which the surface's normal is on the side of the first one's.
-fn turned(ball: &Ball, mut stations: Vec<Station>) -> Vec<Station> {
+fn turned(ball: &Ball, mut stations: Vec<BallStation>) -> Vec<BallStation> {
     let s = &stations[stations.len() / 2];
     let normal = (s.center - s.feet[0]) * ball.faces[0].side;
     if s.way.cross(-ball.away(s, 0)).dot(normal) < 0.0 {
         stations.reverse();
-        stations.iter_mut().for_each(Station::turn);
+        stations.iter_mut().for_each(BallStation::turn);
     }
     stations
 }
 
 /// The arc of a station, from the first surface to the second.
-fn arc(station: &Station, origin: Origin) -> Result<Chain> {
+fn arc(station: &BallStation, origin: Origin) -> Result<Chain> {
     let (a, b) = (station.feet[0] - station.center, station.feet[1] - station.center);
     let curve = arc_center(station.center, station.feet[0], math::angle_between(a, b), a.cross(b), origin)?;
     Ok(Chain::of_curve(&curve))
 }
 
 /// The extrusion of one arc, where all others are the same one moved along a line.
-fn straight(stations: &[Station], origin: Origin, tolerance: &Tolerance) -> Result<Option<Surface>> {
+fn straight(stations: &[BallStation], origin: Origin, tolerance: &Tolerance) -> Result<Option<Surface>> {
     let (first, last) = (&stations[0], &stations[stations.len() - 1]);
     let by = last.center - first.center;
     let Some(way) = math::unit(by, tolerance.point) else { return Ok(None) };
     let near = |p: DVec3, q: DVec3| p.distance(q) <= EXACT * tolerance.point;
-    let same = |s: &Station| {
+    let same = |s: &BallStation| {
         let moved = s.center - first.center;
         near(way * moved.dot(way), moved) && (0..2).all(|k| near(s.feet[k], first.feet[k] + moved))
     };
@@ -95,7 +95,7 @@ fn straight(stations: &[Station], origin: Origin, tolerance: &Tolerance) -> Resu
 }
 
 /// The revolution of one arc, where all others are the same one turned about an axis: `stations`, by which it is found, and `all`.
-fn round(stations: &[Station], all: &[Station], closed: bool, origin: Origin, tolerance: &Tolerance) -> Result<Option<Surface>> {
+fn round(stations: &[BallStation], all: &[BallStation], closed: bool, origin: Origin, tolerance: &Tolerance) -> Result<Option<Surface>> {
     let n = stations.len() - 1;
     let (a, b, c) = (stations[0].center, stations[n / 3].center, stations[2 * n / 3].center);
     let Ok(circle) = arc_through(a, c, b, origin) else { return Ok(None) };
@@ -111,14 +111,14 @@ fn round(stations: &[Station], all: &[Station], closed: bool, origin: Origin, to
         let (x, y) = (profile(p), profile(q));
         (x.0 - y.0).abs().max((x.1 - y.1).abs()) <= EXACT * tolerance.point
     };
-    let same = |s: &Station| near(s.center, a) && (0..2).all(|k| near(s.feet[k], stations[0].feet[k]));
+    let same = |s: &BallStation| near(s.center, a) && (0..2).all(|k| near(s.feet[k], stations[0].feet[k]));
     // The arc stands in a plane through the axis.
     let upright = stations[0].way.dot(direction).abs() * stations[0].center.distance(axis.about) <= EXACT * tolerance.point;
     if !upright || !all.iter().all(same) {
         return Ok(None);
     }
-    let out = |s: &Station| (s.center - axis.about).reject_from_normalized(direction);
-    let step = |w: &[Station]| {
+    let out = |s: &BallStation| (s.center - axis.about).reject_from_normalized(direction);
+    let step = |w: &[BallStation]| {
         let angle = math::angle_between(out(&w[0]), out(&w[1]));
         angle.copysign(out(&w[0]).cross(out(&w[1])).dot(direction))
     };
@@ -128,10 +128,10 @@ fn round(stations: &[Station], all: &[Station], closed: bool, origin: Origin, to
 }
 
 /// More stations where the net through those that are there leaves the ball.
-fn refined(ball: &Ball, radius: f64, stations: Vec<Station>, origin: Origin) -> Result<Vec<Station>> {
+fn refined(ball: &Ball, radius: f64, stations: Vec<BallStation>, origin: Origin) -> Result<Vec<BallStation>> {
     let lost = |at: DVec3| CurveFault::NotConverged { of: origin, what: "the way of the ball".to_owned(), at };
     let mut done = vec![stations[0]];
-    let mut open: Vec<Station> = stations[1..].iter().rev().copied().collect();
+    let mut open: Vec<BallStation> = stations[1..].iter().rev().copied().collect();
     while let Some(next) = open.pop() {
         job::poll();
         let last = done[done.len() - 1];
@@ -151,16 +151,16 @@ fn refined(ball: &Ball, radius: f64, stations: Vec<Station>, origin: Origin) -> 
 }
 
 /// A ball between two stations, about in the middle, where the net between them is off at some place; outer none where none is found.
-fn off(ball: &Ball, radius: f64, a: &Station, b: &Station) -> Option<Option<Station>> {
+fn off(ball: &Ball, radius: f64, a: &BallStation, b: &BallStation) -> Option<Option<BallStation>> {
     const PLACES: [f64; 3] = [0.25, 0.5, 0.75];
     let piece = net(&[*a, *b], radius);
     let allowed = SHARE * ball.tolerance.point;
-    let lean = (OneSided::After, OneSided::After);
+    let side = (OneSided::After, OneSided::After);
     let mut middle = None;
     let mut near = true;
     for u in PLACES {
-        let jets = PLACES.map(|v| piece.jet(u, v, lean));
-        let ends = [piece.jet(u, 0.0, lean), piece.jet(u, 1.0, lean)];
+        let jets = PLACES.map(|v| piece.jet(u, v, side));
+        let ends = [piece.jet(u, 0.0, side), piece.jet(u, 1.0, side)];
         let plane = (between(a, b, u), (ends[0].du + ends[1].du).normalize_or_zero());
         let uv = [0, 1].map(|k: usize| a.uv[k].lerp(ball.faces[k].turned_to(b.uv[k], a.uv[k]), u));
         let Some(found) = ball.station(radius, plane, &Guess { uv, points: ends.map(|e| e.p) }) else {
@@ -176,14 +176,14 @@ fn off(ball: &Ball, radius: f64, a: &Station, b: &Station) -> Option<Option<Stat
 }
 
 /// A ball between two stations, from the first one on in steps that become smaller until one is found.
-fn nearer(ball: &Ball, radius: f64, a: &Station, b: &Station) -> Option<Station> {
+fn nearer(ball: &Ball, radius: f64, a: &BallStation, b: &BallStation) -> Option<BallStation> {
     const SMALLER: i32 = 8;
     let whole = length_of((a.center, a.way), (b.center, b.way));
     (1..=SMALLER).find_map(|k| ball.ahead(radius, a, whole * math::powi(0.5, k)))
 }
 
 /// The centre between two stations, cubic.
-fn between(a: &Station, b: &Station, u: f64) -> DVec3 {
+fn between(a: &BallStation, b: &BallStation, u: f64) -> DVec3 {
     let h = length_between(a, b) / 3.0;
     let (p, q) = (a.center + a.way * (h / a.speed()), b.center - b.way * (h / b.speed()));
     let w = 1.0 - u;
@@ -191,7 +191,7 @@ fn between(a: &Station, b: &Station, u: f64) -> DVec3 {
 }
 
 /// Mean length that the centre and both points go from one station to the next.
-fn length_between(a: &Station, b: &Station) -> f64 {
+fn length_between(a: &BallStation, b: &BallStation) -> f64 {
     let feet = |k: usize| length_of((a.feet[k], a.rates[k]), (b.feet[k], b.rates[k]));
     (length_of((a.center, a.way), (b.center, b.way)) + feet(0) + feet(1)) / 3.0
 }
@@ -204,22 +204,22 @@ fn length_of(a: (DVec3, DVec3), b: (DVec3, DVec3)) -> f64 {
 }
 
 /// The three homogeneous poles of a station's arc and their derivatives by the mean length of the ways.
-fn poles(s: &Station, radius: f64) -> [(DVec4, DVec4); 3] {
+fn poles(s: &BallStation, radius: f64) -> [(DVec4, DVec4); 3] {
     let middle = s.feet[0] + s.feet[1] - s.center * 2.0;
     let rate = s.rates[0] + s.rates[1] - s.way * 2.0;
     let length = middle.length();
     let weight = length / (2.0 * radius);
-    let stretch = middle.dot(rate) / length;
-    let weight_rate = stretch / (2.0 * radius);
+    let length_rate = middle.dot(rate) / length;
+    let weight_rate = length_rate / (2.0 * radius);
     let apex = s.center * weight + middle * (radius / length);
-    let apex_rate = s.center * weight_rate + s.way * weight + (rate - middle * (stretch / length)) * (radius / length);
+    let apex_rate = s.center * weight_rate + s.way * weight + (rate - middle * (length_rate / length)) * (radius / length);
     let foot = |k: usize| (s.feet[k].extend(1.0), s.rates[k].extend(0.0));
     [foot(0), (apex.extend(weight), apex_rate.extend(weight_rate)), foot(1)].map(|(p, d)| (p, d / s.speed()))
 }
 
 /// The net through some stations: arcs along v, cubics along u. Their derivatives are continuous, but where a station is there twice
 /// each side has its own.
-fn net(stations: &[Station], radius: f64) -> NurbsSurface {
+fn net(stations: &[BallStation], radius: f64) -> NurbsSurface {
     let steps: Vec<f64> = stations.windows(2).map(|w| length_between(&w[0], &w[1])).collect();
     let total: f64 = steps.iter().sum();
     let rows: Vec<_> = stations.iter().map(|s| poles(s, radius)).collect();

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use crate::base::tolerance::NUDGE;
 use crate::surface::rolling::ball::{Ball, Guess};
-use crate::surface::rolling::station::{Place, Station};
+use crate::surface::rolling::station::{BallStation, Place};
 
 /// Stations this near to each other, in tolerances, are one.
 const NEAR: f64 = 64.0;
@@ -15,7 +15,7 @@ const BESIDE: f64 = 1.0 / 64.0;
 
 /// A line of a surface on which a ball is looked for.
 #[derive(Clone, Copy)]
-struct Line {
+struct BreakLine {
     face: usize,
     axis: usize,
     at: f64,
@@ -24,7 +24,7 @@ struct Line {
 }
 
 /// Stations with those between them that touch a surface on one of its breaks; those very near to one give way to it.
-pub(crate) fn with_breaks(ball: &Ball, radius: f64, stations: &[Station]) -> Vec<Station> {
+pub(crate) fn with_breaks(ball: &Ball, radius: f64, stations: &[BallStation]) -> Vec<BallStation> {
     let breaks = [ball.faces[0].breaks(), ball.faces[1].breaks()];
     let last = stations.len() - 2;
     let mut all = vec![stations[0]];
@@ -32,7 +32,7 @@ pub(crate) fn with_breaks(ball: &Ball, radius: f64, stations: &[Station]) -> Vec
         let mut lines = Vec::new();
         for (face, breaks) in breaks.iter().enumerate() {
             for (axis, breaks) in breaks.iter().enumerate() {
-                lines.extend(crossed(ball, pair, (face, axis), breaks));
+                lines.extend(crossed(ball, pair, face, axis, breaks));
             }
         }
         lines.sort_by(|x, y| x.share.total_cmp(&y.share));
@@ -49,12 +49,12 @@ pub(crate) fn with_breaks(ball: &Ball, radius: f64, stations: &[Station]) -> Vec
     all
 }
 
-fn near(ball: &Ball, s: &Station, t: &Station) -> bool {
+fn near(ball: &Ball, s: &BallStation, t: &BallStation) -> bool {
     s.center.distance(t.center).max(s.feet[0].distance(t.feet[0])).max(s.feet[1].distance(t.feet[1])) <= NEAR * ball.tolerance.point
 }
 
 /// Stations with one more between any two of them.
-pub(crate) fn with_middles(ball: &Ball, radius: f64, stations: &[Station]) -> Vec<Station> {
+pub(crate) fn with_middles(ball: &Ball, radius: f64, stations: &[BallStation]) -> Vec<BallStation> {
     let mut all = vec![stations[0]];
     for pair in stations.windows(2) {
         // The surface and the direction in (u, v) in which it goes farther.
@@ -68,7 +68,7 @@ pub(crate) fn with_middles(ball: &Ball, radius: f64, stations: &[Station]) -> Ve
             .fold((0, 0, 0.0), |x, y| if y.2 > x.2 { y } else { x });
         if reach > ball.tolerance.point {
             let at = pair[0].uv[face][axis] + 0.5 * step(ball, pair, face)[axis];
-            all.extend(on_lines(ball, radius, pair, &[Line { face, axis, at, share: 0.5 }]));
+            all.extend(on_lines(ball, radius, pair, &[BreakLine { face, axis, at, share: 0.5 }]));
         }
         all.push(pair[1]);
     }
@@ -76,22 +76,22 @@ pub(crate) fn with_middles(ball: &Ball, radius: f64, stations: &[Station]) -> Ve
 }
 
 /// From where the first of two stations touches a surface to where the second one does.
-fn step(ball: &Ball, pair: &[Station], face: usize) -> DVec2 {
+fn step(ball: &Ball, pair: &[BallStation], face: usize) -> DVec2 {
     ball.faces[face].turned_to(pair[1].uv[face], pair[0].uv[face]) - pair[0].uv[face]
 }
 
 /// The breaks of one direction between two stations.
-fn crossed(ball: &Ball, pair: &[Station], (face, axis): (usize, usize), breaks: &[f64]) -> Vec<Line> {
+fn crossed(ball: &Ball, pair: &[BallStation], face: usize, axis: usize, breaks: &[f64]) -> Vec<BreakLine> {
     let (from, d) = (pair[0].uv[face][axis], step(ball, pair, face)[axis]);
     let first = if ball.faces[face].is_closed(axis) { from.min(from + d).floor() } else { 0.0 };
     let all = [0.0, 1.0].into_iter().flat_map(|turn| breaks.iter().map(move |at| at + first + turn));
-    let lines = all.map(|at| Line { face, axis, at, share: (at - from) / d });
+    let lines = all.map(|at| BreakLine { face, axis, at, share: (at - from) / d });
     lines.filter(|line| line.share > 0.0 && line.share < 1.0).collect()
 }
 
 /// The balls on lines between two stations, where there are some, apart from each other and not the same as both.
-fn on_lines(ball: &Ball, radius: f64, pair: &[Station], lines: &[Line]) -> Vec<Station> {
-    let mut found: Vec<Station> = Vec::new();
+fn on_lines(ball: &Ball, radius: f64, pair: &[BallStation], lines: &[BreakLine]) -> Vec<BallStation> {
+    let mut found: Vec<BallStation> = Vec::new();
     for line in lines {
         let f = line.share;
         let mut uv = [0, 1].map(|k: usize| pair[0].uv[k] + step(ball, pair, k) * f);
@@ -99,7 +99,7 @@ fn on_lines(ball: &Ball, radius: f64, pair: &[Station], lines: &[Line]) -> Vec<S
         let guess = Guess { uv, points: [0, 1].map(|k: usize| pair[0].feet[k].lerp(pair[1].feet[k], f)) };
         let place = Place::Line { face: line.face, axis: line.axis, at: line.at, along: pair[0].way + pair[1].way };
         let Some(next) = ball.at(radius, &place, &guess) else { continue };
-        let same = |s: &Station| s.feet[line.face].distance(next.feet[line.face]) <= SAME * ball.tolerance.point;
+        let same = |s: &BallStation| s.feet[line.face].distance(next.feet[line.face]) <= SAME * ball.tolerance.point;
         if !same(&pair[0]) && !same(&pair[1]) && !found.last().is_some_and(|last| near(ball, last, &next)) {
             found.push(next);
         }
@@ -108,13 +108,13 @@ fn on_lines(ball: &Ball, radius: f64, pair: &[Station], lines: &[Line]) -> Vec<S
 }
 
 /// Stations twice where the points that touch have other speeds before than after them: each with those of its side.
-pub(crate) fn with_sides(ball: &Ball, radius: f64, stations: &[Station]) -> Vec<Station> {
+pub(crate) fn with_sides(ball: &Ball, radius: f64, stations: &[BallStation]) -> Vec<BallStation> {
     let step = BESIDE * ball.tolerance.point;
-    let beside = |s: &Station, side: f64| {
+    let beside = |s: &BallStation, side: f64| {
         let guess = Guess { uv: s.uv, points: s.feet };
         let found = ball.station(radius, (s.center + s.way * (side * step), s.way), &guess)?;
         // It is the same ball but for its speeds.
-        Some(Station { way: s.way, rates: found.rates, ..*s })
+        Some(BallStation { way: s.way, rates: found.rates, ..*s })
     };
     let last = stations.len() - 1;
     let mut all = Vec::with_capacity(stations.len());

@@ -21,7 +21,7 @@ pub(crate) fn cut_back(ball: &Ball, k: usize, contact: &Chain, origin: Origin) -
     let normal = face.normal_at(at);
     let out = along.cross(normal).normalize_or_zero();
     let away = if out.dot(at - from) < 0.0 { -out } else { out };
-    // A place well beside the cut: farther and farther from it while the surface goes on, and while no other stretch of the cut is much
+    // A place well beside the cut: farther and farther from it while the surface goes on, and while no other part of the cut is much
     // nearer than this one, for across a small closed one lies what goes.
     let place = |step: f64| {
         let ahead = (face.nearest(at + away * step) - at).dot(away);

@@ -11,8 +11,8 @@ use crate::surface::faults::NoBlend;
 use crate::surface::offset::boundary::border_chains;
 use crate::surface::rolling::ball::Ball;
 use crate::surface::rolling::ball_surface::Roll;
-use crate::surface::trims::holes::trim;
-use crate::surface::trims::project::{Way, carried};
+use crate::surface::trims::project::{Way, project};
+use crate::surface::trims::trim::trim;
 
 /// Steps from the middle to an end in which the border is looked for.
 const STEPS: usize = 256;
@@ -84,7 +84,7 @@ fn slanted(ball: &Ball, roll: &Roll, stops: [[f64; 2]; 2], origin: Origin) -> Re
     let contacts = [contact(0)?, contact(1)?];
     let end = |e: usize| -> Result<Chain> {
         let across = line(DVec3::new(stops[0][e], 0.0, 0.0), DVec3::new(stops[1][e], 1.0, 0.0), origin)?;
-        Ok(Chain::of_curve(&carried(surface, &Chain::of_curve(&across), Way::Parameters, origin, tolerance)?))
+        Ok(Chain::of_curve(&project(surface, &Chain::of_curve(&across), Way::Parameters, origin, tolerance)?))
     };
     let around = [contacts[0].clone(), end(1)?, contacts[1].clone(), end(0)?];
     Ok(Roll { surface: trim(surface, &around, &[], origin, tolerance)?, contacts })

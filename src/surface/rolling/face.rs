@@ -10,7 +10,7 @@ use crate::surface::core::plane;
 use crate::surface::core::surface::Surface;
 use crate::surface::data::jet::{Jet2, unit_normal};
 use crate::surface::offset::exact::level;
-use crate::surface::trims::holes::with_loops;
+use crate::surface::trims::trim::with_loops;
 
 /// One of the two surfaces.
 pub(crate) struct Face {

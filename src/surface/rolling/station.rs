@@ -9,7 +9,7 @@ use crate::surface::rolling::face::Face;
 
 /// Where a ball touches.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Station {
+pub(crate) struct BallStation {
     /// Its centre.
     pub center: DVec3,
     /// Places on both surfaces.
@@ -22,7 +22,7 @@ pub(crate) struct Station {
     pub rates: [DVec3; 2],
 }
 
-impl Station {
+impl BallStation {
     /// Mean length that the centre and both points go per length of the centre's way.
     pub fn speed(&self) -> f64 {
         (1.0 + self.rates[0].length() + self.rates[1].length()) / 3.0
@@ -86,7 +86,7 @@ fn raised(face: &Face, uv: DVec2, radius: f64) -> Option<Raised> {
 }
 
 /// The ball at a place, from guesses of where it touches; none where Newton's method finds none.
-pub(crate) fn station(faces: &[Face; 2], radius: f64, place: &Place, guess: [DVec2; 2], rounding: f64) -> Option<Station> {
+pub(crate) fn station(faces: &[Face; 2], radius: f64, place: &Place, guess: [DVec2; 2], rounding: f64) -> Option<BallStation> {
     const STEPS: usize = 24;
     /// What is left over after the last step, in roundings.
     const LEFT: f64 = 256.0;
@@ -123,5 +123,5 @@ pub(crate) fn station(faces: &[Face; 2], radius: f64, place: &Place, guess: [DVe
     let across = x.normal.cross(y.normal).try_normalize()?;
     let way = if across.dot(place.along()) < 0.0 { -across } else { across };
     let rate = |r: &Raised| step(r.cu, r.cv, way).map(|s| r.du * s.x + r.dv * s.y);
-    Some(Station { center: 0.5 * (x.center + y.center), uv, feet: [x.p, y.p], way, rates: [rate(&x)?, rate(&y)?] })
+    Some(BallStation { center: 0.5 * (x.center + y.center), uv, feet: [x.p, y.p], way, rates: [rate(&x)?, rate(&y)?] })
 }

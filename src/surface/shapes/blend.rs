@@ -11,23 +11,20 @@
 use glam::DVec3;
 
 use crate::base::bbox::Box3;
-use crate::base::par;
 use crate::base::tolerance::SLIVER;
 use crate::geometry::{Jet, Motion};
 use crate::surface::data::breaks::tidy;
 use crate::surface::data::jet::Jet2;
 use crate::surface::data::one_sided::OneSided;
 use crate::surface::rails::rail::Rail;
-use crate::surface::shapes::weights::{Axis, Weights};
-
-/// Rows of points made by one thread at a time.
-const ROWS: usize = 16;
+use crate::surface::shapes::blend_terms::{active_lines, with_slopes};
+use crate::surface::shapes::weights::{BlendAxis, Weights};
 
 /// A surface blended from a grid of curves.
 #[derive(Clone, Debug)]
 pub struct Blend {
-    u: Axis,
-    v: Axis,
+    u: BlendAxis,
+    v: BlendAxis,
     /// F_i, one per node of `u`, or none (ruled).
     along_v: Vec<Rail>,
     /// G_j, one per node of `v`.
@@ -42,7 +39,7 @@ impl Blend {
     /// A surface from its rails: `along_v` one per node of `u` (or none: ruled), `along_u` one per node of `v`.
     ///
     /// The node of two curves is taken in the middle of what the two say, a pole's where it is.
-    pub fn new(u: Axis, v: Axis, along_v: Vec<Rail>, along_u: Vec<Rail>) -> Self {
+    pub fn new(u: BlendAxis, v: BlendAxis, along_v: Vec<Rail>, along_u: Vec<Rail>) -> Self {
         let mut corners = Vec::with_capacity(along_v.len() * along_u.len());
         for (g, &y) in along_u.iter().zip(&v.nodes) {
             for (f, &x) in along_v.iter().zip(&u.nodes) {
@@ -52,12 +49,12 @@ impl Blend {
                 });
             }
         }
-        let corners = with_slopes(&corners, along_v.len(), (&u, &v));
+        let corners = with_slopes(&corners, along_v.len(), &u, &v);
         Self { u, v, along_v, along_u, corners }
     }
 
     /// Parameters and rule across u (first) and v (second).
-    pub fn axes(&self) -> (&Axis, &Axis) {
+    pub fn axes(&self) -> (&BlendAxis, &BlendAxis) {
         (&self.u, &self.v)
     }
 
@@ -88,11 +85,11 @@ impl Blend {
     }
 
     /// Point and derivatives, from the given sides where they jump.
-    pub fn jet(&self, u: f64, v: f64, lean: (OneSided, OneSided)) -> Jet2 {
-        let (a, b) = (self.u.weights(u, lean.0), self.v.weights(v, lean.1));
-        let mut row = Row::default();
-        let along_v = |i: usize| self.along_v[i].jet(v, lean.1);
-        let along_u = |j: usize| self.along_u[j].jet(u, lean.0);
+    pub fn jet(&self, u: f64, v: f64, side: (OneSided, OneSided)) -> Jet2 {
+        let (a, b) = (self.u.weights(u, side.0), self.v.weights(v, side.1));
+        let mut row = BlendSum::default();
+        let along_v = |i: usize| self.along_v[i].jet(v, side.1);
+        let along_u = |j: usize| self.along_u[j].jet(u, side.0);
         if self.u.slopes().is_empty() {
             self.row(&a, &b, |_, i| along_v(i), &mut row);
         } else if !self.along_v.is_empty() {
@@ -109,7 +106,7 @@ impl Blend {
     }
 
     /// Adds the sums over the terms along v and the nodes; `along_v` by place among the active terms, and by term.
-    fn row(&self, a: &Weights, b: &Weights, along_v: impl Fn(usize, usize) -> Jet, row: &mut Row) {
+    fn row(&self, a: &Weights, b: &Weights, along_v: impl Fn(usize, usize) -> Jet, row: &mut BlendSum) {
         if self.along_v.is_empty() {
             return;
         }
@@ -121,7 +118,7 @@ impl Blend {
     }
 
     /// Takes the nodes of term `i` along v from its curve.
-    fn less_nodes(&self, i: usize, b: &Weights, f: &mut Jet) {
+    pub(super) fn less_nodes(&self, i: usize, b: &Weights, f: &mut Jet) {
         for (j, z) in b.iter() {
             let p = self.corner(i, j);
             f.p -= p * z[0];
@@ -130,72 +127,9 @@ impl Blend {
         }
     }
 
-    /// Points of the tensor grid `us × vs`, u fastest. Every curve is evaluated once per row or column.
-    pub fn grid(&self, us: &[f64], vs: &[f64], out: &mut [DVec3]) {
-        let rows: Vec<Weights> = vs.iter().map(|&v| self.v.weights(v, OneSided::After)).collect();
-        let columns = Columns::new(self, us, &rows);
-        let rows = RowPoints::new(self, vs, rows);
-        let width = us.len().max(1);
-        par::chunks_mut(out, width * ROWS, |chunk, part| {
-            for (line, k) in part.chunks_exact_mut(width).zip(chunk * ROWS..vs.len()) {
-                self.grid_row(&columns, &rows, k, line);
-            }
-        });
-    }
-
-    fn grid_row(&self, columns: &Columns, rows: &RowPoints, k: usize, line: &mut [DVec3]) {
-        let b = &rows.weights[k];
-        let curves: Vec<(&[DVec3], f64)> = b.iter().map(|(j, w)| (columns.along_u[j].as_slice(), w[0])).collect();
-        // F_i(v) less the nodes: what each term along v adds at weight 1.
-        let own: Vec<DVec3> =
-            (0..rows.along_v.len()).map(|i| b.iter().fold(rows.along_v[i][k], |f, (j, w)| f - self.corner(i, j) * w[0])).collect();
-        match (curves.as_slice(), own.is_empty()) {
-            ([(g0, w0), (g1, w1)], false) if columns.active == 2 => {
-                for run in &columns.runs {
-                    let (f0, step) = (own[run.first], own[run.first + 1] - own[run.first]);
-                    let range = run.from..run.to;
-                    let second = &columns.second[range.clone()];
-                    let (g0, g1) = (&g0[range.clone()], &g1[range.clone()]);
-                    for (((p, s), a), b) in line[range].iter_mut().zip(second).zip(g0).zip(g1) {
-                        *p = f0 + step * *s + *a * *w0 + *b * *w1;
-                    }
-                }
-            }
-            _ => {
-                for (c, p) in line.iter_mut().enumerate() {
-                    let along = curves.iter().fold(DVec3::ZERO, |sum, (g, w)| sum + g[c] * *w);
-                    *p = if own.is_empty() { along } else { columns.weights[c].iter().fold(along, |sum, (i, w)| sum + own[i] * w[0]) };
-                }
-            }
-        }
-    }
-
-    /// Jets of the tensor grid `us × vs`, u fastest, each with its own lean (see [`Blend::jet`]).
-    pub fn jets(&self, us: &[(f64, OneSided)], vs: &[(f64, OneSided)], out: &mut Vec<Jet2>) {
-        let a: Vec<Weights> = us.iter().map(|&(u, lean)| self.u.weights(u, lean)).collect();
-        let rows: Vec<Weights> = vs.iter().map(|&(v, lean)| self.v.weights(v, lean)).collect();
-        let curve = |j: usize| us.iter().map(|&(u, lean)| self.along_u[j].jet(u, lean)).collect();
-        let along_u: Vec<Vec<Jet>> = asked_terms(&self.v, self.along_u.len(), &rows, curve);
-        for (&(v, lean), b) in vs.iter().zip(&rows) {
-            let along_v = self.along_v.iter().map(|f| vec![f.jet(v, lean)]).collect();
-            let mut along_v: Vec<Vec<Jet>> = all_terms(&self.u, along_v);
-            along_v.iter_mut().enumerate().for_each(|(i, f)| self.less_nodes(i, b, &mut f[0]));
-            for (c, a) in a.iter().enumerate() {
-                let mut row = Row::default();
-                if !along_v.is_empty() {
-                    a.iter().for_each(|(i, w)| row.add_along_v(&along_v[i][0], w));
-                }
-                for (j, w) in b.iter() {
-                    row.add_along_u(&along_u[j][c], w);
-                }
-                out.push(row.0);
-            }
-        }
-    }
-
     /// Interior parameters where the surface is less than smooth, in u (first) and v (second).
     pub fn breaks(&self) -> (Vec<f64>, Vec<f64>) {
-        let inner = |axis: &Axis, rails: &[Rail]| {
+        let inner = |axis: &BlendAxis, rails: &[Rail]| {
             let mut all = if axis.is_piecewise() { axis.nodes.clone() } else { Vec::new() };
             rails.iter().for_each(|rail| rail.breaks(&mut all));
             tidy(all, SLIVER)
@@ -205,7 +139,7 @@ impl Blend {
 
     /// Interior network lines and kinks.
     pub fn cells(&self) -> (Vec<f64>, Vec<f64>) {
-        let inner = |axis: &Axis, rails: &[Rail]| {
+        let inner = |axis: &BlendAxis, rails: &[Rail]| {
             let kinks = rails.iter().flat_map(Rail::kinks).map(|k| k.0);
             tidy(axis.nodes.iter().copied().chain(kinks).collect(), SLIVER)
         };
@@ -232,104 +166,17 @@ impl Blend {
             v: self.v.clone(),
             along_v: self.along_v.iter().map(|r| r.moved(motion)).collect(),
             along_u: self.along_u.iter().map(|r| r.moved(motion)).collect(),
-            corners: with_slopes(&nodes, self.along_v.len(), (&self.u, &self.v)),
+            corners: with_slopes(&nodes, self.along_v.len(), &self.u, &self.v),
         }
     }
-}
-
-/// The lines of a spline's four active terms in a cell, each curve evaluated once.
-fn active_lines(axis: &Axis, cell: usize, curve: impl Fn(usize) -> Jet) -> [Jet; 4] {
-    let mut lines = [Jet::default(); 4];
-    let (first, second) = (&axis.slopes()[cell], &axis.slopes()[cell + 1]);
-    for i in 0..axis.nodes.len() {
-        if first[i] == 0.0 && second[i] == 0.0 && i != cell && i != cell + 1 {
-            continue;
-        }
-        let jet = curve(i);
-        if i == cell {
-            lines[0] = jet;
-        } else if i == cell + 1 {
-            lines[1] = jet;
-        }
-        jet.add_times(first[i], &mut lines[2]);
-        jet.add_times(second[i], &mut lines[3]);
-    }
-    lines
-}
-
-/// What sums of curves are made of.
-trait Terms: Copy + Default {
-    /// `sum += by · self`.
-    fn add_times(&self, by: f64, sum: &mut Self);
-}
-
-impl Terms for DVec3 {
-    fn add_times(&self, by: f64, sum: &mut Self) {
-        *sum += *self * by;
-    }
-}
-
-impl Terms for Jet {
-    fn add_times(&self, by: f64, sum: &mut Self) {
-        sum.p += self.p * by;
-        sum.d1 += self.d1 * by;
-        sum.d2 += self.d2 * by;
-    }
-}
-
-/// Rows of values, one per node of an axis (or none), and after them those of the slopes across the nodes.
-fn all_terms<T: Terms>(axis: &Axis, mut rows: Vec<Vec<T>>) -> Vec<Vec<T>> {
-    let width = rows.first().map_or(0, Vec::len);
-    if !rows.is_empty() {
-        for slope in axis.slopes() {
-            let mut sums = vec![T::default(); width];
-            for (row, &by) in rows.iter().zip(slope).filter(|(_, by)| **by != 0.0) {
-                row.iter().zip(&mut sums).for_each(|(x, sum)| x.add_times(by, sum));
-            }
-            rows.push(sums);
-        }
-    }
-    rows
-}
-
-/// The same of the terms that some blending values ask for, from the `n` curves that these are sums of; the others are empty.
-fn asked_terms<T: Terms>(axis: &Axis, n: usize, weights: &[Weights], curve: impl Fn(usize) -> Vec<T>) -> Vec<Vec<T>> {
-    if axis.slopes().is_empty() || n == 0 {
-        return (0..n).map(curve).collect();
-    }
-    let mut asked = vec![false; axis.terms()];
-    weights.iter().flat_map(Weights::iter).for_each(|(term, _)| asked[term] = true);
-    let slopes = || axis.slopes().iter().zip(&asked[n..]);
-    let taken = |i: usize| asked[i] || slopes().any(|(slope, asked)| *asked && slope[i] != 0.0);
-    let mut rows: Vec<Vec<T>> = (0..n).map(|i| if taken(i) { curve(i) } else { Vec::new() }).collect();
-    let width = rows.iter().map(Vec::len).max().unwrap_or(0);
-    for (slope, asked) in slopes() {
-        let mut sums = if *asked { vec![T::default(); width] } else { Vec::new() };
-        for (row, &by) in rows.iter().zip(slope).filter(|(_, by)| **by != 0.0) {
-            row.iter().zip(&mut sums).for_each(|(x, sum)| x.add_times(by, sum));
-        }
-        rows.push(sums);
-    }
-    rows
-}
-
-/// Nodes, `i` fastest, with their slopes in u, in v and in both.
-fn with_slopes(nodes: &[DVec3], width: usize, (u, v): (&Axis, &Axis)) -> Vec<DVec3> {
-    if width == 0 || (u.slopes().is_empty() && v.slopes().is_empty()) {
-        return nodes.to_vec();
-    }
-    let columns = (0..width).map(|i| nodes.iter().skip(i).step_by(width).copied().collect()).collect();
-    let columns = all_terms(u, columns);
-    let rows = (0..nodes.len() / width).map(|j| columns.iter().map(|column| column[j]).collect()).collect();
-    all_terms(v, rows).concat()
 }
 
 /// The sum under construction.
 #[derive(Default)]
-struct Row(Jet2);
+pub(super) struct BlendSum(pub(super) Jet2);
 
-impl Row {
-    fn add_along_v(&mut self, f: &Jet, a: &[f64; 3]) {
+impl BlendSum {
+    pub(super) fn add_along_v(&mut self, f: &Jet, a: &[f64; 3]) {
         let jet = &mut self.0;
         jet.p += f.p * a[0];
         jet.du += f.p * a[1];
@@ -339,7 +186,7 @@ impl Row {
         jet.dvv += f.d2 * a[0];
     }
 
-    fn add_along_u(&mut self, g: &Jet, b: &[f64; 3]) {
+    pub(super) fn add_along_u(&mut self, g: &Jet, b: &[f64; 3]) {
         let jet = &mut self.0;
         jet.p += g.p * b[0];
         jet.dv += g.p * b[1];
@@ -347,55 +194,6 @@ impl Row {
         jet.du += g.d1 * b[0];
         jet.duv += g.d1 * b[1];
         jet.duu += g.d2 * b[0];
-    }
-}
-
-/// Everything of a grid that depends on u alone.
-struct Columns {
-    active: usize,
-    weights: Vec<Weights>,
-    /// With two active curves: the weight of the second one, and runs of columns between the same two curves.
-    second: Vec<f64>,
-    runs: Vec<ColumnRun>,
-    along_u: Vec<Vec<DVec3>>,
-}
-
-struct ColumnRun {
-    from: usize,
-    to: usize,
-    first: usize,
-}
-
-impl Columns {
-    fn new(blend: &Blend, us: &[f64], rows: &[Weights]) -> Self {
-        let active = blend.u.active();
-        let (mut weights, mut second, mut runs) = (Vec::new(), Vec::new(), Vec::<ColumnRun>::new());
-        for (c, &u) in us.iter().enumerate() {
-            let a = blend.u.weights(u, OneSided::After);
-            if active == 2 {
-                second.push(a.values()[1][0]);
-                match runs.last_mut() {
-                    Some(run) if run.first == a.cell() => run.to = c + 1,
-                    _ => runs.push(ColumnRun { from: c, to: c + 1, first: a.cell() }),
-                }
-            } else {
-                weights.push(a);
-            }
-        }
-        let along_u = asked_terms(&blend.v, blend.along_u.len(), rows, |j| blend.along_u[j].points(us));
-        Self { active, weights, second, runs, along_u }
-    }
-}
-
-/// Everything of a grid that depends on v alone.
-struct RowPoints {
-    weights: Vec<Weights>,
-    along_v: Vec<Vec<DVec3>>,
-}
-
-impl RowPoints {
-    fn new(blend: &Blend, vs: &[f64], weights: Vec<Weights>) -> Self {
-        Self { weights, along_v: all_terms(&blend.u, blend.along_v.iter().map(|f| f.points(vs)).collect()) }
     }
 }
 
@@ -411,7 +209,7 @@ mod tests {
     fn grid_of(f: Formula, us: &[f64], vs: &[f64], rule: Rule) -> Blend {
         let along_v = us.iter().map(|&at| Rail::Formula { f, at, along_u: false }).collect();
         let along_u = vs.iter().map(|&at| Rail::Formula { f, at, along_u: true }).collect();
-        Blend::new(Axis::new(us.to_vec(), rule), Axis::new(vs.to_vec(), rule), along_v, along_u)
+        Blend::new(BlendAxis::new(us.to_vec(), rule), BlendAxis::new(vs.to_vec(), rule), along_v, along_u)
     }
 
     fn check(f: Formula, samples: &[(f64, f64, [f64; 3], f64)]) {
@@ -505,7 +303,7 @@ mod tests {
             us.iter().for_each(|&u| assert!(at(u, x).distance(f(u, x)) < 1e-15));
             vs.iter().for_each(|&v| assert!(at(x, v).distance(f(x, v)) < 1e-15));
         }
-        // The reference has exact end slopes, which no net tells; both are near the surface the net was taken from.
+        // The reference has exact end slopes, which no net has; both are near the surface the net was taken from.
         for (u, v, z) in [(0.15, 0.25, 0.2749839308201486), (0.5, 0.75, 0.36282226268018547), (0.85, 0.4, 0.8184562035105998)] {
             assert!((at(u, v).z - z).abs() < 2e-4, "{}", at(u, v).z - z);
         }

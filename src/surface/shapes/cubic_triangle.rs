@@ -1,6 +1,6 @@
 //! The cubic triangle [Clough & Tocher 1965]: three cubics about the centre of a triangle that meet its corners with their
 //! gradients. Towards the centre of the neighbour the slope is linear along each side: neighbours are C1, quadratics are reproduced,
-//! and a short side does not carry its steepness through a long triangle, as slopes at right angles to it would.
+//! and a short side does not pass its steepness on through a long triangle, as slopes at right angles to it would.
 
 use glam::DVec2;
 
@@ -40,7 +40,7 @@ const PLACES: [[[usize; 3]; 3]; 3] = {
 
 /// A cubic over a triangle in (u, v).
 #[derive(Clone, Copy, Debug)]
-pub struct Piece {
+pub struct TrianglePiece {
     /// Corners, counter-clockwise; the third one is the centre of the triangle that this is a third of.
     pub corners: [DVec2; 3],
     /// Bézier ordinates.
@@ -49,13 +49,13 @@ pub struct Piece {
     gradients: [DVec2; 3],
 }
 
-impl StableHash for Piece {
+impl StableHash for TrianglePiece {
     fn hash_into(&self, to: &mut StableHasher) {
         (self.corners.map(|c| (c.x, c.y)), self.ordinates).hash_into(to);
     }
 }
 
-impl Piece {
+impl TrianglePiece {
     fn new(corners: [DVec2; 3], ordinates: [f64; 10]) -> Self {
         let area = (corners[1] - corners[0]).perp_dot(corners[2] - corners[0]);
         let gradient = |k: usize| (corners[(k + 2) % 3] - corners[(k + 1) % 3]).perp() / area;
@@ -169,7 +169,7 @@ pub struct Corner {
 /// The three pieces over a triangle, counter-clockwise; piece k has the side from corner k to the next one. `opposite` are the
 /// corners of the neighbours across the sides that are not on them, none on the border; `size` are the lengths of the box over which
 /// u and v run 0…1 from the origin.
-pub fn pieces(corners: &[Corner; 3], opposite: [Option<DVec2>; 3], size: DVec2) -> [Piece; 3] {
+pub fn pieces(corners: &[Corner; 3], opposite: [Option<DVec2>; 3], size: DVec2) -> [TrianglePiece; 3] {
     let center = (corners[0].at + corners[1].at + corners[2].at) / 3.0;
     // A third of the way from corner a towards a place.
     let towards = |a: usize, p: DVec2| corners[a].h + corners[a].slope.dot(p - corners[a].at) / 3.0;
@@ -213,7 +213,7 @@ pub fn pieces(corners: &[Corner; 3], opposite: [Option<DVec2>; 3], size: DVec2) 
         ] {
             ordinates[k] = value;
         }
-        Piece::new([uv(corners[a].at), uv(corners[b].at), uv(center)], ordinates)
+        TrianglePiece::new([uv(corners[a].at), uv(corners[b].at), uv(center)], ordinates)
     })
 }
 

@@ -13,12 +13,12 @@ use crate::surface::data::jet::Jet2;
 use crate::surface::data::one_sided::OneSided;
 use crate::surface::rails::line::Line;
 use crate::surface::rails::rail::Rail;
-use crate::surface::shapes::matrices::{At, Matrices, Over, times};
+use crate::surface::shapes::matrices::{Matrices, MatrixJet, Over, times};
 
 /// Rows of points made by one thread at a time.
 const ROWS: usize = 16;
 
-/// A profile carried along a path by a matrix that is known as polynomials (see [`Matrices`]).
+/// A profile moved along a path by a matrix that is known as polynomials (see [`Matrices`]).
 #[derive(Clone, Debug)]
 pub struct Framed {
     path: Rail,
@@ -33,7 +33,7 @@ crate::content!(Framed { path, turn, profile, foot });
 #[derive(Clone, Debug)]
 pub struct FramedStrip {
     path: Line,
-    middle: At,
+    middle: MatrixJet,
     over: Over,
 }
 
@@ -49,19 +49,19 @@ impl Framed {
         &self.profile
     }
 
-    fn carried(&self, m: &Jet, [k, k1, k2]: &At, g: &Jet) -> Jet2 {
+    fn placed(&self, m: &Jet, [k, k1, k2]: &MatrixJet, g: &Jet) -> Jet2 {
         let arm = g.p - self.foot;
         Jet2 { p: m.p + *k * arm, du: m.d1 + *k1 * arm, dv: *k * g.d1, duu: m.d2 + *k2 * arm, duv: *k1 * g.d1, dvv: *k * g.d2 }
     }
 
     /// Point and derivatives, from the given sides where they jump.
-    pub fn jet(&self, u: f64, v: f64, lean: (OneSided, OneSided)) -> Jet2 {
-        self.carried(&self.path.jet(u, lean.0), &self.turn.at(u, lean.0), &self.profile.jet(v, lean.1))
+    pub fn jet(&self, u: f64, v: f64, side: (OneSided, OneSided)) -> Jet2 {
+        self.placed(&self.path.jet(u, side.0), &self.turn.at(u, side.0), &self.profile.jet(v, side.1))
     }
 
-    /// Where a point of the profile, with its derivatives, is carried.
-    pub fn jet_of(&self, g: &Jet, u: f64, lean: OneSided) -> Jet2 {
-        self.carried(&self.path.jet(u, lean), &self.turn.at(u, lean), g)
+    /// Where a point of the profile, with its derivatives, lies.
+    pub fn jet_of(&self, g: &Jet, u: f64, side: OneSided) -> Jet2 {
+        self.placed(&self.path.jet(u, side), &self.turn.at(u, side), g)
     }
 
     /// What is known between two values of u, one strip for each formula.
@@ -77,7 +77,7 @@ impl Framed {
     }
 
     /// How much longer a vector may become on its way, at most.
-    pub fn stretch(&self) -> f64 {
+    pub fn largest_scale(&self) -> f64 {
         self.turn.reach()
     }
 
@@ -96,10 +96,10 @@ impl Framed {
 
     /// Jets of the tensor grid, u fastest.
     pub fn jets(&self, us: &[(f64, OneSided)], vs: &[(f64, OneSided)], out: &mut Vec<Jet2>) {
-        let columns: Vec<(Jet, At)> = us.iter().map(|&(u, lean)| (self.path.jet(u, lean), self.turn.at(u, lean))).collect();
-        for &(v, lean) in vs {
-            let g = self.profile.jet(v, lean);
-            out.extend(columns.iter().map(|(m, k)| self.carried(m, k, &g)));
+        let columns: Vec<(Jet, MatrixJet)> = us.iter().map(|&(u, side)| (self.path.jet(u, side), self.turn.at(u, side))).collect();
+        for &(v, side) in vs {
+            let g = self.profile.jet(v, side);
+            out.extend(columns.iter().map(|(m, k)| self.placed(m, k, &g)));
         }
     }
 
@@ -115,7 +115,7 @@ impl Framed {
         FramedStrip { path: self.path.line(u0, u1), middle, over: self.turn.over((u0, u1)) }
     }
 
-    /// Bounds over the rectangle of a strip and a stretch of the profile.
+    /// Bounds over the rectangle of a strip and an interval of the profile.
     pub fn enclosure(&self, strip: &FramedStrip, half: (f64, f64), line: &Line) -> Enclosure {
         let [k, k1, k2] = &strip.middle;
         let (arm, arms) = (line.mid.p - self.foot, line.p() + -self.foot);
@@ -126,7 +126,7 @@ impl Framed {
             times(&strip.over[0], k, &line.d2, line.mid.d2),
         ];
         let first = [m.d1 + times(&strip.over[1], k1, &arms, arm), times(&strip.over[0], k, &line.d1, line.mid.d1)];
-        Enclosure::new(self.carried(&m.mid, &strip.middle, &line.mid), half, second, Some(first))
+        Enclosure::new(self.placed(&m.mid, &strip.middle, &line.mid), half, second, Some(first))
     }
 
     /// Interior parameters where the shape is less than analytic.

@@ -14,7 +14,7 @@ use crate::base::tolerance::{BESIDE_TRIANGLE, EPSILON, NUDGE};
 use crate::geometry::Motion;
 use crate::surface::data::enclosure::Enclosure;
 use crate::surface::data::jet::Jet2;
-use crate::surface::shapes::cubic_triangle::{Height, Heights, Piece};
+use crate::surface::shapes::cubic_triangle::{Height, Heights, TrianglePiece};
 use crate::surface::shapes::frame::Frame;
 
 /// Cells of the table in each direction at most.
@@ -22,7 +22,7 @@ const MOST_CELLS: usize = 1 << 9;
 
 /// A side of the border, counter-clockwise: the first two corners of a piece.
 #[derive(Clone, Copy, Debug)]
-struct Rim {
+struct TriangleRim {
     piece: usize,
     /// Its ends in model units.
     ends: [DVec2; 2],
@@ -32,7 +32,7 @@ struct Rim {
     length: f64,
 }
 
-impl Rim {
+impl TriangleRim {
     /// How far along it a place in model units is nearest.
     fn foot(&self, at: DVec2) -> f64 {
         (at - self.ends[0]).dot(self.along).clamp(0.0, self.length)
@@ -44,7 +44,7 @@ impl Rim {
 }
 
 /// Bézier ordinates of a part of a curve, by the blossom [Ramshaw 1989].
-fn stretch<const N: usize>(ordinates: [f64; N], from: f64, to: f64) -> [f64; N] {
+fn restricted<const N: usize>(ordinates: [f64; N], from: f64, to: f64) -> [f64; N] {
     std::array::from_fn(|k| {
         let mut row = ordinates;
         for (step, left) in (1..N).rev().enumerate() {
@@ -66,8 +66,8 @@ pub struct Field {
     normal: DVec3,
     /// Lengths of the box in u and v in the units in which heights were made.
     size: DVec2,
-    pieces: Arc<Vec<Piece>>,
-    rims: Arc<Vec<Rim>>,
+    pieces: Arc<Vec<TrianglePiece>>,
+    rims: Arc<Vec<TriangleRim>>,
     table: Arc<Table>,
     /// Heights over the square.
     reach: Interval,
@@ -84,7 +84,7 @@ struct Table {
 }
 
 impl Table {
-    fn new(pieces: &[Piece]) -> Self {
+    fn new(pieces: &[TrianglePiece]) -> Self {
         let cells = ((pieces.len() as f64).sqrt().ceil() as usize).clamp(1, MOST_CELLS);
         let mut lists: Vec<Vec<usize>> = vec![Vec::new(); cells * cells];
         for (k, piece) in pieces.iter().enumerate() {
@@ -121,12 +121,12 @@ fn span(cells: usize, low: f64, high: f64) -> (usize, usize) {
 impl Field {
     /// A field over a frame whose vectors span the box of the pieces; `rim` are the pieces whose first two corners are a side of
     /// the border, counter-clockwise.
-    pub fn new(frame: Frame, normal: DVec3, pieces: Vec<Piece>, rim: &[usize]) -> Self {
+    pub fn new(frame: Frame, normal: DVec3, pieces: Vec<TrianglePiece>, rim: &[usize]) -> Self {
         let size = DVec2::new(frame.eu.length(), frame.ev.length());
         let side = |k: &usize| {
             let ends = [0, 1].map(|c| pieces[*k].corners[c] * size);
             let way = ends[1] - ends[0];
-            Rim { piece: *k, ends, along: way / way.length(), length: way.length() }
+            TriangleRim { piece: *k, ends, along: way / way.length(), length: way.length() }
         };
         let rims = Arc::new(rim.iter().map(side).collect());
         let table = Arc::new(Table::new(&pieces));
@@ -136,7 +136,7 @@ impl Field {
     }
 
     /// The pieces.
-    pub fn pieces(&self) -> &[Piece] {
+    pub fn pieces(&self) -> &[TrianglePiece] {
         &self.pieces
     }
 
@@ -185,11 +185,11 @@ impl Field {
     /// The height outside the border.
     fn beyond(&self, p: DVec2) -> Height {
         let at = p * self.size;
-        let near = |rim: &Rim| {
+        let near = |rim: &TriangleRim| {
             let s = rim.foot(at);
             (at.distance_squared(rim.ends[0] + rim.along * s), s)
         };
-        let mut best: Option<(f64, f64, &Rim)> = None;
+        let mut best: Option<(f64, f64, &TriangleRim)> = None;
         for rim in self.rims.iter() {
             let (off, s) = near(rim);
             if best.is_none_or(|b| off < b.0) {
@@ -282,10 +282,10 @@ impl Field {
     }
 
     /// Ranges of what goes on beyond a side and its ends, as far as a rectangle with these corners (model units) reaches.
-    fn outside(&self, rim: &Rim, corners: &[DVec2; 4], far: f64) -> Heights {
+    fn outside(&self, rim: &TriangleRim, corners: &[DVec2; 4], far: f64) -> Heights {
         let piece = &self.pieces[rim.piece];
         let (t, n) = (rim.along, -rim.along.perp());
-        // The stretch of the side that is nearest to places of the rectangle.
+        // The part of the side that is nearest to places of the rectangle.
         let along_it = corners.map(|p| rim.foot(p) / rim.length);
         let (from, to) = along_it.into_iter().fold((1.0, 0.0), |(a, b): (f64, f64), s| (a.min(s), b.max(s)));
         // Along a side the height is cubic and its slope across linear: second derivatives lie between those at the ends.
@@ -298,7 +298,7 @@ impl Field {
         let (a, b) = (bend(0).lerp(bend(1), from), bend(0).lerp(bend(1), to));
         let (along, across) = (Interval::between(a.x, b.x), Interval::between(a.y, b.y));
         let slopes = piece.side_slopes().map(|d| d / self.size);
-        let slope = |axis: usize| hull(stretch(slopes.map(|d| d[axis]), from, to));
+        let slope = |axis: usize| hull(restricted(slopes.map(|d| d[axis]), from, to));
         let depth = Interval { low: 0.0, high: far };
         let d1 = [0, 1].map(|k| slope(k) + across * depth * t[k]);
         let d2 =
@@ -307,7 +307,7 @@ impl Field {
         let feet = [from, to].map(|s| rim.ends[0].lerp(rim.ends[1], s));
         let arms = corners.iter().flat_map(|p| feet.map(|foot| *p - foot));
         let arm = |k: usize| arms.clone().map(|d| Interval::at(d[k])).fold(Interval::at(0.0), Interval::union);
-        let h = hull(stretch(piece.side_heights(), from, to)) + slope(0) * arm(0) + slope(1) * arm(1);
+        let h = hull(restricted(piece.side_heights(), from, to)) + slope(0) * arm(0) + slope(1) * arm(1);
         let (w, l) = (self.size.x, self.size.y);
         Heights { h, d1: [d1[0] * w, d1[1] * l], d2: [d2[0] * (w * w), d2[1] * (w * l), d2[2] * (l * l)] }
     }
@@ -341,7 +341,7 @@ impl Field {
     }
 
     /// The same beyond a side of the border, where the slope jumps across the lines from its ends outwards.
-    fn creases(&self, rim: &Rim, within: f64) -> (f64, DVec3) {
+    fn creases(&self, rim: &TriangleRim, within: f64) -> (f64, DVec3) {
         /// A cubic over a step h is off by this share of a jump of the slope times h.
         const OFF: f64 = 1.0 / 8.0;
         let (t, n) = (rim.along, -rim.along.perp());

@@ -1,6 +1,6 @@
 //! Matrices that depend on one parameter: polynomials between stops, fitted once to rounding.
 //!
-//! A piece of degree 8 meets the function in the nine Chebyshev points of its stretch, ends included; stretches are halved
+//! A piece of degree 8 meets the function in the nine Chebyshev points of its interval, ends included; intervals are halved
 //! until what is checked between them agrees.
 
 use glam::{DMat3, DVec3};
@@ -13,23 +13,23 @@ use crate::surface::data::one_sided::OneSided;
 
 /// Degree of a fitted piece.
 const DEGREE: usize = 8;
-/// A stretch is halved this often, at most.
+/// An interval is halved this often, at most.
 const DEPTH: usize = 12;
 
 /// Coefficients of the powers of x, −1…1 over the piece.
-type Piece = Vec<DMat3>;
+type MatrixPiece = Vec<DMat3>;
 
 /// K(u) for u from the first stop to the last one.
 #[derive(Clone, Debug)]
 pub struct Matrices {
     stops: Vec<f64>,
-    pieces: Vec<Piece>,
+    pieces: Vec<MatrixPiece>,
 }
 
 /// A matrix and its first two derivatives: values at one parameter.
-pub type At = [DMat3; 3];
+pub type MatrixJet = [DMat3; 3];
 
-/// The same over a stretch: bounds of the columns, then of those of both derivatives.
+/// The same over an interval: bounds of the columns, then of those of both derivatives.
 pub type Over = [[Interval3; 3]; 3];
 
 impl StableHash for Matrices {
@@ -48,9 +48,9 @@ impl Matrices {
         Self { stops: Vec::new(), pieces: Vec::new() }
     }
 
-    /// Appends the stretch `a…b`, which goes on from the last one. False where no polynomial fits.
+    /// Appends the interval `a…b`, which goes on from the last one. False where no polynomial fits.
     ///
-    /// `of` gives the matrix at ascending parameters: it is asked for one stretch after the other, each from left to right.
+    /// `of` gives the matrix at ascending parameters: it is asked for one interval after the other, each from left to right.
     pub fn fit(&mut self, (a, b): (f64, f64), of: &mut dyn FnMut(f64) -> DMat3) -> bool {
         if self.stops.is_empty() {
             self.stops.push(a);
@@ -74,14 +74,14 @@ impl Matrices {
         depth > 0 && self.halved((a, middle), of, depth - 1) && self.halved((middle, b), of, depth - 1)
     }
 
-    fn piece_at(&self, u: f64, lean: OneSided) -> usize {
+    fn piece_at(&self, u: f64, side: OneSided) -> usize {
         let inner = &self.stops[1..self.stops.len() - 1];
-        inner.partition_point(|&x| if lean == OneSided::Before { x < u - EPSILON } else { x <= u + EPSILON })
+        inner.partition_point(|&x| if side == OneSided::Before { x < u - EPSILON } else { x <= u + EPSILON })
     }
 
     /// Value and derivatives, from the given side at a stop.
-    pub fn at(&self, u: f64, lean: OneSided) -> At {
-        let k = self.piece_at(u, lean);
+    pub fn at(&self, u: f64, side: OneSided) -> MatrixJet {
+        let k = self.piece_at(u, side);
         let (a, b) = (self.stops[k], self.stops[k + 1]);
         let by = 2.0 / (b - a);
         // From the nearer end, so that both ends are met exactly.
@@ -126,7 +126,7 @@ impl Matrices {
             .all(|piece| piece.iter().enumerate().all(|(k, m)| largest(*m - if k == 0 { DMat3::IDENTITY } else { DMat3::ZERO }) == 0.0))
     }
 
-    /// Largest stretch of a vector, at most: the largest sum of squares of all entries.
+    /// Largest factor by which a vector gets longer, at most: the largest sum of squares of all entries.
     pub fn reach(&self) -> f64 {
         let norm = |m: &DMat3| (m.x_axis.length_squared() + m.y_axis.length_squared() + m.z_axis.length_squared()).sqrt();
         self.pieces.iter().map(|piece| piece.iter().map(norm).sum()).fold(0.0, f64::max)
@@ -150,7 +150,7 @@ fn largest(m: DMat3) -> f64 {
 }
 
 /// The polynomial through the Chebyshev points, by divided differences and then by powers.
-fn interpolated((a, b): (f64, f64), of: &mut dyn FnMut(f64) -> DMat3) -> Piece {
+fn interpolated((a, b): (f64, f64), of: &mut dyn FnMut(f64) -> DMat3) -> MatrixPiece {
     let at = |k: usize| match k {
         0 => a,
         DEGREE => b,
@@ -176,19 +176,19 @@ fn interpolated((a, b): (f64, f64), of: &mut dyn FnMut(f64) -> DMat3) -> Piece {
 }
 
 /// Without the highest powers that are rounding alone.
-fn trimmed(mut piece: Piece) -> Piece {
+fn trimmed(mut piece: MatrixPiece) -> MatrixPiece {
     while piece.len() > 1 && piece.last().is_some_and(|m| largest(*m) <= EPSILON) {
         piece.pop();
     }
     piece
 }
 
-fn value(piece: &Piece, x: f64) -> DMat3 {
+fn value(piece: &MatrixPiece, x: f64) -> DMat3 {
     piece.iter().rev().fold(DMat3::ZERO, |sum, c| sum * x + *c)
 }
 
 /// Value, first derivative and half the second one.
-fn taylor(piece: &Piece, x: f64) -> [DMat3; 3] {
+fn taylor(piece: &MatrixPiece, x: f64) -> [DMat3; 3] {
     let mut t = [DMat3::ZERO; 3];
     for c in piece.iter().rev() {
         t[2] = t[2] * x + t[1];
@@ -199,7 +199,7 @@ fn taylor(piece: &Piece, x: f64) -> [DMat3; 3] {
 }
 
 /// The same polynomial in powers of x − middle.
-fn shifted(piece: &Piece, middle: f64) -> Piece {
+fn shifted(piece: &MatrixPiece, middle: f64) -> MatrixPiece {
     let mut c = piece.clone();
     for k in 0..c.len() {
         for n in (k..c.len() - 1).rev() {

@@ -3,6 +3,8 @@
 
 pub mod blend;
 pub mod blend_enclosure;
+mod blend_grid;
+mod blend_terms;
 pub mod cardinal;
 pub mod cubic_triangle;
 pub mod frame;

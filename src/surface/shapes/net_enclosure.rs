@@ -61,18 +61,18 @@ fn shares_by_levels(knots: &[f64], p: usize, span: usize, arguments: &[f64]) -> 
     out
 }
 
-type Net = Vec<Vec<DVec4>>;
+type PoleRows = Vec<Vec<DVec4>>;
 
 /// Differences along u (within rows) times `f`.
-fn along_u(net: &Net, f: f64) -> Net {
+fn along_u(net: &PoleRows, f: f64) -> PoleRows {
     net.iter().map(|row| row.windows(2).map(|w| (w[1] - w[0]) * f).collect()).collect()
 }
 
-fn along_v(net: &Net, f: f64) -> Net {
+fn along_v(net: &PoleRows, f: f64) -> PoleRows {
     net.windows(2).map(|w| w[0].iter().zip(&w[1]).map(|(a, b)| (*b - *a) * f).collect()).collect()
 }
 
-fn hull(net: &Net) -> (Interval3, Interval) {
+fn hull(net: &PoleRows) -> (Interval3, Interval) {
     let mut all = net.iter().flatten();
     let Some(first) = all.next() else { return (Interval3::default(), Interval::default()) };
     let (low, high) = all.fold((*first, *first), |(low, high), q| (low.min(*q), high.max(*q)));
@@ -150,7 +150,7 @@ impl NurbsSurface {
     pub fn enclosure(&self, u: &NetStrip, v: &NetStrip, (x, y): (f64, f64), half: (f64, f64)) -> Enclosure {
         let net = self.piece(u, v);
         let (p, q) = (self.degree.0 as f64, self.degree.1 as f64);
-        let nets = |net: &Net| {
+        let nets = |net: &PoleRows| {
             let (nu, nv) = (along_u(net, p / u.width), along_v(net, q / v.width));
             let (uu, vv) = (along_u(&nu, (p - 1.0) / u.width), along_v(&nv, (q - 1.0) / v.width));
             [hull(net), hull(&nu), hull(&nv), hull(&uu), hull(&along_v(&nu, q / v.width)), hull(&vv)]
@@ -165,7 +165,7 @@ impl NurbsSurface {
         }
         // Relative to the first point little cancels.
         let origin = projected(net[0][0]);
-        let local: Net = net.iter().map(|row| row.iter().map(|q| (q.truncate() - origin * q.w).extend(q.w)).collect()).collect();
+        let local: PoleRows = net.iter().map(|row| row.iter().map(|q| (q.truncate() - origin * q.w).extend(q.w)).collect()).collect();
         let [value, u1, v1, uu, uv, vv] = nets(&local);
         let over = value.1.inverse();
         let points: Vec<DVec3> = local.iter().flatten().map(|q| projected(*q)).collect();
@@ -183,7 +183,7 @@ impl NurbsSurface {
     }
 
     /// Bézier points over a rectangle, rows along u.
-    pub(crate) fn piece(&self, u: &NetStrip, v: &NetStrip) -> Net {
+    pub(crate) fn piece(&self, u: &NetStrip, v: &NetStrip) -> PoleRows {
         let (p, q) = self.degree;
         let mut all = vec![DVec4::ZERO; (p + 1) * (q + 1)];
         self.piece_into(u, v, &mut all);

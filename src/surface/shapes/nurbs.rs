@@ -52,10 +52,10 @@ pub(crate) fn multiplicity(knots: &[f64], knot: f64) -> usize {
 }
 
 /// The basis at a parameter [Piegl & Tiller 1997, A2.2 and eq. 2.9].
-fn basis<const N: usize>(knots: &[f64], degree: usize, t: f64, lean: OneSided) -> Basis<N> {
+fn basis<const N: usize>(knots: &[f64], degree: usize, t: f64, side: OneSided) -> Basis<N> {
     let (low, high) = (degree, knots.len() - degree - 2);
     let inner = &knots[low + 1..=high];
-    let reached = |k: &f64| if lean == OneSided::Before { *k < t - EPSILON } else { *k <= t + EPSILON };
+    let reached = |k: &f64| if side == OneSided::Before { *k < t - EPSILON } else { *k <= t + EPSILON };
     let span = low + inner.partition_point(reached);
     let mut values = [[0.0; 3]; N];
     let round = &knots[span + 1 - degree..=span + degree];
@@ -151,8 +151,8 @@ impl NurbsSurface {
     }
 
     /// Point and derivatives, from the given sides where they jump.
-    pub fn jet(&self, u: f64, v: f64, lean: (OneSided, OneSided)) -> Jet2 {
-        if self.is_common() { self.jet_on::<COMMON>(u, v, lean) } else { self.jet_on::<MOST>(u, v, lean) }
+    pub fn jet(&self, u: f64, v: f64, side: (OneSided, OneSided)) -> Jet2 {
+        if self.is_common() { self.jet_on::<COMMON>(u, v, side) } else { self.jet_on::<MOST>(u, v, side) }
     }
 
     /// Whether evaluation keeps to small arrays.
@@ -160,9 +160,9 @@ impl NurbsSurface {
         self.degree.0.max(self.degree.1) <= COMMON_DEGREE
     }
 
-    fn jet_on<const N: usize>(&self, u: f64, v: f64, lean: (OneSided, OneSided)) -> Jet2 {
-        let a: Basis<N> = basis(&self.knots.0, self.degree.0, u, lean.0);
-        let b: Basis<N> = basis(&self.knots.1, self.degree.1, v, lean.1);
+    fn jet_on<const N: usize>(&self, u: f64, v: f64, side: (OneSided, OneSided)) -> Jet2 {
+        let a: Basis<N> = basis(&self.knots.0, self.degree.0, u, side.0);
+        let b: Basis<N> = basis(&self.knots.1, self.degree.1, v, side.1);
         let mut sums = [DVec4::ZERO; 6];
         for (j, y) in b.values().iter().enumerate() {
             let row = &self.poles[(b.first + j) * self.counts.0 + a.first..][..a.n];
@@ -249,15 +249,15 @@ impl NurbsSurface {
         let kink_u = us.iter().copied().filter(|&u| {
             multiplicity(&self.knots.0, u) >= self.degree.0
                 && along_v.iter().any(|&v| {
-                    let side = |lean| self.jet(u, v, (lean, OneSided::After)).du;
-                    turns(side(OneSided::Before), side(OneSided::After))
+                    let slope = |side| self.jet(u, v, (side, OneSided::After)).du;
+                    turns(slope(OneSided::Before), slope(OneSided::After))
                 })
         });
         let kink_v = vs.iter().copied().filter(|&v| {
             multiplicity(&self.knots.1, v) >= self.degree.1
                 && along_u.iter().any(|&u| {
-                    let side = |lean| self.jet(u, v, (OneSided::After, lean)).dv;
-                    turns(side(OneSided::Before), side(OneSided::After))
+                    let slope = |side| self.jet(u, v, (OneSided::After, side)).dv;
+                    turns(slope(OneSided::Before), slope(OneSided::After))
                 })
         });
         (kink_u.collect(), kink_v.collect())

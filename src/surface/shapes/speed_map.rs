@@ -96,8 +96,8 @@ impl NurbsSurface {
         let speed = |x: f64| {
             let one = |j: usize| {
                 let y = (j as f64 + 0.5) / ACROSS as f64;
-                let lean = (OneSided::After, OneSided::After);
-                if in_u { self.jet(x, y, lean).du.length() } else { self.jet(y, x, lean).dv.length() }
+                let side = (OneSided::After, OneSided::After);
+                if in_u { self.jet(x, y, side).du.length() } else { self.jet(y, x, side).dv.length() }
             };
             (0..ACROSS).map(one).sum::<f64>() / ACROSS as f64
         };
@@ -165,12 +165,12 @@ mod tests {
         assert!(net.speed_map(true).is_none());
         let speed_map = net.speed_map(false).expect("runs unevenly");
         let evened = net.composed(false, &speed_map);
-        let lean = (OneSided::After, OneSided::After);
+        let side = (OneSided::After, OneSided::After);
         let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
         for k in 0..=1000 {
             let (u, v) = (0.37, f64::from(k) / 1000.0 * if k % 2 == 0 { 1.0 } else { 0.01 });
-            let jet = evened.jet(u, speed_map.place(v), lean);
-            assert!(jet.p.distance(net.jet(u, v, lean).p) < 1e-12, "{v}");
+            let jet = evened.jet(u, speed_map.place(v), side);
+            assert!(jet.p.distance(net.jet(u, v, side).p) < 1e-12, "{v}");
             (least, most) = (least.min(jet.dv.length()), most.max(jet.dv.length()));
         }
         assert!(most < 4.0 * least, "{least} {most}");

@@ -1,4 +1,4 @@
-//! Simple sweeps [Koh & Park 1990, §4.2]: a profile carried along a straight path or turned about an axis.
+//! Simple sweeps [Koh & Park 1990, §4.2]: a profile translated along a straight path or turned about an axis.
 //!
 //! u runs along the path, v along the profile by its arc-length fraction; both are exact.
 
@@ -53,7 +53,7 @@ pub enum Path {
     },
 }
 
-/// A profile carried along a path.
+/// A profile translated or turned along a path.
 #[derive(Clone, Debug)]
 pub struct Sweep {
     profile: Rail,
@@ -85,7 +85,7 @@ impl Turned {
         Self { sin, cos, axis }
     }
 
-    fn carry(&self, v: DVec3) -> DVec3 {
+    fn rotated(&self, v: DVec3) -> DVec3 {
         v * self.cos + self.axis.cross(v) * self.sin + self.axis * (self.axis.dot(v) * (1.0 - self.cos))
     }
 }
@@ -106,13 +106,13 @@ impl Sweep {
         if u == 1.0 && angle.abs() == std::f64::consts::TAU { 0.0 } else { u * angle }
     }
 
-    fn carried(&self, g: &Jet, u: f64) -> Jet2 {
+    fn placed(&self, g: &Jet, u: f64) -> Jet2 {
         match self.path {
             Path::Straight { by } => Jet2 { p: g.p + by * u, du: by, dv: g.d1, dvv: g.d2, ..Jet2::default() },
             Path::Turn { about, axis, angle } => {
                 let turned = Turned::new(axis, Self::angle_at(angle, u));
-                let arm = turned.carry(g.p - about);
-                let (dv, dvv) = (turned.carry(g.d1), turned.carry(g.d2));
+                let arm = turned.rotated(g.p - about);
+                let (dv, dvv) = (turned.rotated(g.d1), turned.rotated(g.d2));
                 // An end that rounding put beside the axis, or across it, is on it: there nothing turns.
                 let across = axis.cross(arm);
                 let on_axis = across.length_squared() <= EPSILON * EPSILON * (arm.length_squared() + g.d1.length_squared());
@@ -122,14 +122,14 @@ impl Sweep {
         }
     }
 
-    /// Where a point of the profile, with its derivatives, is carried.
+    /// Where a point of the profile, with its derivatives, lies.
     pub fn jet_of(&self, g: &Jet, u: f64) -> Jet2 {
-        self.carried(g, u)
+        self.placed(g, u)
     }
 
     /// Point and derivatives, from the given side in v where they jump.
-    pub fn jet(&self, u: f64, v: f64, lean: (OneSided, OneSided)) -> Jet2 {
-        self.carried(&self.profile.jet(v, lean.1), u)
+    pub fn jet(&self, u: f64, v: f64, side: (OneSided, OneSided)) -> Jet2 {
+        self.placed(&self.profile.jet(v, side.1), u)
     }
 
     /// Points of the tensor grid, u fastest: the profile is evaluated once per row, the turn once per column.
@@ -159,9 +159,9 @@ impl Sweep {
 
     /// Jets of the tensor grid, u fastest.
     pub fn jets(&self, us: &[(f64, OneSided)], vs: &[(f64, OneSided)], out: &mut Vec<Jet2>) {
-        for &(v, lean) in vs {
-            let g = self.profile.jet(v, lean);
-            out.extend(us.iter().map(|&(u, _)| self.carried(&g, u)));
+        for &(v, side) in vs {
+            let g = self.profile.jet(v, side);
+            out.extend(us.iter().map(|&(u, _)| self.placed(&g, u)));
         }
     }
 
@@ -170,9 +170,9 @@ impl Sweep {
         &self.profile
     }
 
-    /// Bounds over a rectangle about `u`, the profile known over its stretch.
+    /// Bounds over a rectangle about `u`, the profile known over its interval.
     pub fn enclosure(&self, u: f64, half: (f64, f64), line: &Line) -> Enclosure {
-        let mid = self.carried(&line.mid, u);
+        let mid = self.placed(&line.mid, u);
         let Path::Turn { about, axis, angle } = self.path else {
             return Enclosure::new(mid, half, [Interval3::default(), Interval3::default(), line.d2], None);
         };
@@ -229,7 +229,7 @@ impl Sweep {
         }
     }
 
-    /// The profile carried to a place of the path; `None` where it is no chain.
+    /// The profile at a place of the path; `None` where it is no chain.
     pub fn profile_at(&self, u: f64) -> Option<Chain> {
         let motion = match self.path {
             Path::Straight { by } => Motion::translation(by * u),

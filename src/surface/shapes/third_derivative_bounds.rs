@@ -1,7 +1,7 @@
 //! Bounds of the third derivatives of a net over boxes that get smaller where that makes the bounds much better.
 //!
 //! Hulls of differences, and the quotient rule where weights differ, say many times what there is over a span in which a net runs at
-//! uneven speed or goes a good part of a turn round. Halves of a box tell: where they are hardly better, the box is small enough.
+//! uneven speed or goes a good part of a turn round. Halves of a box decide: where they are hardly better, the box is small enough.
 
 use std::collections::VecDeque;
 
@@ -18,7 +18,7 @@ const BOXES: usize = 3;
 const PLAIN: usize = 3;
 /// Bounds over smaller boxes as a share of those over larger ones, from which on boxes are small enough.
 const MAX_BOUND_RATIO: f64 = 0.75;
-/// What bounds in any direction weigh beside those along the normal: triangles hardly lean.
+/// What bounds in any direction weigh beside those along the normal: triangles hardly side.
 const LEANING: f64 = 0.1;
 /// Halvings of a box along each direction.
 const MAX_DEPTH: u8 = 6;
@@ -70,7 +70,7 @@ fn halves((low, high): Area, axis: usize) -> [Area; 2] {
 }
 
 impl ThirdDerivativeBounds {
-    /// Of a net with its knots, 0 and 1 among them; `normal` tells that of a place.
+    /// Of a net with its knots, 0 and 1 among them; `normal` gives that of a place.
     pub fn new(net: &NurbsSurface, knots: (&[f64], &[f64]), normal: &impl Fn(f64, f64) -> DVec3) -> Self {
         let lines = (divided(knots.0), divided(knots.1));
         let strips = |in_u: bool, lines: &[f64]| -> Vec<NetStrip> { lines.windows(2).map(|w| net.strip(in_u, (w[0], w[1]))).collect() };
@@ -247,13 +247,13 @@ mod tests {
         (k.wrapping_mul(2_654_435_761) >> 7 & 0xffff) as f64 / 65_536.0
     }
 
-    /// A bent net of degree 6 by 5 with an inner knot, and weights that differ by `spread`.
-    fn net(seed: usize, spread: f64) -> NurbsSurface {
+    /// A bent net of degree 6 by 5 with an inner knot, and weights that differ by `variation`.
+    fn net(seed: usize, variation: f64) -> NurbsSurface {
         let knots = ([vec![0.0; 7], vec![0.4], vec![1.0; 7]].concat(), [vec![0.0; 6], vec![1.0; 6]].concat());
         let pole = |k: usize| {
             let place = DVec3::new((k % 8) as f64, (k / 8) as f64, 0.0);
             let off = DVec3::new(noise(seed + 3 * k), noise(seed + 3 * k + 1), 4.0 * noise(seed + 3 * k + 2));
-            weighted(place + off, 1.0 + spread * noise(seed + 7 * k + 1000))
+            weighted(place + off, 1.0 + variation * noise(seed + 7 * k + 1000))
         };
         NurbsSurface { degree: (6, 5), knots, poles: (0..48).map(pole).collect(), counts: (8, 6) }
     }

@@ -13,14 +13,14 @@ use crate::surface::rails::rail::Rail;
 use crate::surface::shapes::trilateral::Trilateral;
 
 /// P_a over a range of its two weights: w, q, Q and the second derivatives of both sides.
-struct Corner {
+struct CornerBounds {
     w: Interval,
     q: Interval,
     rest: Interval3,
     sides: (Interval3, Interval3),
 }
 
-impl Corner {
+impl CornerBounds {
     fn blended(&self) -> Interval3 {
         self.sides.0 * self.w + self.sides.1 * self.q
     }
@@ -46,7 +46,7 @@ fn line((rail, back): Outward, t: Interval) -> Line {
 }
 
 /// The corner's part for weights in `b` and `c`, whose sum is in `t`.
-fn corner(side_b: Outward, side_c: Outward, b: Interval, c: Interval, t: Interval) -> Corner {
+fn corner(side_b: Outward, side_c: Outward, b: Interval, c: Interval, t: Interval) -> CornerBounds {
     let (f, g) = (line(side_b, t), line(side_c, t));
     let bent = f.d2 - g.d2;
     let share = |x: f64, y: f64, none: f64| if x + y > 0.0 { x / (x + y) } else { none };
@@ -63,7 +63,7 @@ fn corner(side_b: Outward, side_c: Outward, b: Interval, c: Interval, t: Interva
         let away = (bent * (t * Interval::around_zero(f.half)) + at) * t.square().inverse();
         if t.low < 0.5 * t.high { away.intersection(at_corner()) } else { away }
     };
-    Corner { w, q, rest, sides: (f.d2, g.d2) }
+    CornerBounds { w, q, rest, sides: (f.d2, g.d2) }
 }
 
 impl Trilateral {

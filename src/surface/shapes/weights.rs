@@ -42,7 +42,7 @@ impl Rule {
 
 /// Parameters of the curves across one direction, ascending from 0 to 1, and the rule between them.
 #[derive(Clone, Debug)]
-pub struct Axis {
+pub struct BlendAxis {
     /// u_0 = 0 … u_M = 1.
     pub nodes: Vec<f64>,
     /// The rule.
@@ -52,7 +52,7 @@ pub struct Axis {
 }
 
 crate::content_of_word!(Rule);
-crate::content!(Axis { nodes, rule } but { slopes });
+crate::content!(BlendAxis { nodes, rule } but { slopes });
 
 /// Terms that take part at one parameter, each with value, first and second derivative of its function.
 #[derive(Clone, Debug)]
@@ -106,7 +106,7 @@ impl Weights {
     }
 }
 
-impl Axis {
+impl BlendAxis {
     /// An axis with what its rule needs to be evaluated.
     pub fn new(nodes: Vec<f64>, rule: Rule) -> Self {
         let mut slopes = if rule.is_spline() { cardinal::slopes(&nodes, rule == Rule::Periodic) } else { Vec::new() };
@@ -166,16 +166,16 @@ impl Axis {
     }
 
     /// The cell that holds a parameter.
-    pub fn cell(&self, x: f64, lean: OneSided) -> usize {
+    pub fn cell(&self, x: f64, side: OneSided) -> usize {
         let inner = &self.nodes[1..self.nodes.len() - 1];
-        inner.partition_point(|&node| if lean == OneSided::Before { node < x - EPSILON } else { node <= x + EPSILON })
+        inner.partition_point(|&node| if side == OneSided::Before { node < x - EPSILON } else { node <= x + EPSILON })
     }
 
     /// Blending values at a parameter.
-    pub fn weights(&self, x: f64, lean: OneSided) -> Weights {
+    pub fn weights(&self, x: f64, side: OneSided) -> Weights {
         match self.rule {
             Rule::Linear | Rule::Cubic => {
-                let k = self.cell(x, lean);
+                let k = self.cell(x, side);
                 let h = self.nodes[k + 1] - self.nodes[k];
                 let mut weights = Weights::room(k, 2);
                 // From the nearer node: at a node the weights are 0 and 1 without rounding.
@@ -192,7 +192,7 @@ impl Axis {
                 weights.set(near, [1.0 - value, -d1, -d2]);
                 weights
             }
-            Rule::Spline | Rule::Periodic => self.hermite(x, self.cell(x, lean)),
+            Rule::Spline | Rule::Periodic => self.hermite(x, self.cell(x, side)),
             Rule::Lagrange => {
                 let n = self.nodes.len();
                 let mut weights = Weights::room(0, n);
@@ -321,11 +321,11 @@ mod tests {
     #[test]
     fn weights_sum_to_one_and_are_exact_at_nodes() {
         for rule in [Rule::Linear, Rule::Cubic, Rule::Lagrange, Rule::Spline, Rule::Periodic] {
-            let axis = Axis::new(vec![0.0, 0.15, 0.4, 0.55, 0.6, 0.83, 1.0], rule);
+            let axis = BlendAxis::new(vec![0.0, 0.15, 0.4, 0.55, 0.6, 0.83, 1.0], rule);
             for i in 0..=100 {
-                for lean in [OneSided::After, OneSided::Before] {
+                for side in [OneSided::After, OneSided::Before] {
                     let x = f64::from(i) / 100.0;
-                    let w = axis.weights(x, lean);
+                    let w = axis.weights(x, side);
                     let sums = w.values()[..axis.shares()].iter().fold([0.0; 3], |s, v| [s[0] + v[0], s[1] + v[1], s[2] + v[2]]);
                     assert!((sums[0] - 1.0).abs() < 1e-13 && sums[1].abs() < 1e-9 && sums[2].abs() < 1e-6, "{x} {sums:?}");
                 }
@@ -342,7 +342,7 @@ mod tests {
     #[test]
     fn derivatives_are_difference_quotients() {
         for rule in [Rule::Linear, Rule::Cubic, Rule::Lagrange, Rule::Spline, Rule::Periodic] {
-            let axis = Axis::new(vec![0.0, 0.2, 0.5, 1.0], rule);
+            let axis = BlendAxis::new(vec![0.0, 0.2, 0.5, 1.0], rule);
             let h = 1e-5;
             for x in [0.05, 0.13, 0.3, 0.47, 0.7, 0.9] {
                 let (a, b, c) =
@@ -359,12 +359,12 @@ mod tests {
     #[test]
     fn splines_are_smooth_to_second_order_and_their_ranges_hold() {
         for rule in [Rule::Spline, Rule::Periodic] {
-            let axis = Axis::new(vec![0.0, 0.15, 0.4, 0.55, 0.6, 0.83, 1.0], rule);
+            let axis = BlendAxis::new(vec![0.0, 0.15, 0.4, 0.55, 0.6, 0.83, 1.0], rule);
             let last = axis.nodes.len() - 1;
             // The curve at a seam is counted at both of its nodes.
             let round = rule == Rule::Periodic;
-            let of = |x: f64, lean: OneSided, i: usize, d: usize| {
-                let w = axis.weights(x, lean);
+            let of = |x: f64, side: OneSided, i: usize, d: usize| {
+                let w = axis.weights(x, side);
                 axis.whole(&w, i)[d] + if i == 0 && round { axis.whole(&w, last)[d] } else { 0.0 }
             };
             let seam = round.then_some((1.0, 0.0));
@@ -390,7 +390,7 @@ mod tests {
     #[test]
     fn lebesgue_constants_of_equal_nodes() {
         // Closed values for equally spaced nodes: degree 2 gives 1.25, degree 6 gives 4.549 [Brutman 1997, table 1].
-        let equal = |n: usize| Axis::new((0..=n).map(|k| k as f64 / n as f64).collect(), Rule::Lagrange).lebesgue();
+        let equal = |n: usize| BlendAxis::new((0..=n).map(|k| k as f64 / n as f64).collect(), Rule::Lagrange).lebesgue();
         assert!((equal(1) - 1.0).abs() < 1e-12);
         assert!((equal(2) - 1.25).abs() < 1e-9);
         assert!((equal(6) - 4.549).abs() < 1e-3);

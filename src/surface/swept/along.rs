@@ -39,7 +39,7 @@ pub struct Settings {
     pub origin: Origin,
 }
 
-/// The surface that a profile leaves that is carried along a path, staying as it stands to the path's direction.
+/// The surface of a profile that moves along a path, staying as it stands to the path's direction.
 ///
 /// u runs along the path, v along the profile, both by arc length. At corners of the path the surface is cut by the
 /// bisecting plane, or the profile is turned about the corner, and then u goes on as far as its farthest point moves. A straight path gives the extruded surface, an arc the revolved one. Returns W639 where it folds.
@@ -68,8 +68,8 @@ fn rounded(profile: &Chain, path: &Chain, settings: &Settings, tolerance: &Toler
     let mut way = Rail::new(path.clone(), Map::new(us, fractions, Reparam::Linear, false));
     way.set_kinks(turned.corners.clone());
     let corners = turned.corners.iter().map(|c| c.0).collect();
-    let frame = Frame { turn: turned.turn.clone(), last: legs.last(), corners, cut: false, closed };
-    let surface = along_way(profile, path, (way, &turned.crossings), frame, settings.origin, tolerance);
+    let frame = PathFrame { turn: turned.turn.clone(), last: legs.last(), corners, cut: false, closed };
+    let surface = along_way(profile, path, way, &turned.crossings, frame, settings.origin, tolerance);
     sweeps_area(&surface, profile, tolerance)?;
     let mut notes = folds(&surface, path, &|u| turned.fraction(u), tolerance);
     if let (Some((at, reach)), true) = (turned.inside, notes.is_empty()) {
@@ -97,7 +97,7 @@ fn framed(profile: &Chain, path: &Chain, settings: &Settings, tolerance: &Tolera
     let mut legs = Legs::new(path, settings.twist, tolerance)?;
     let turn = legs.mitred()?;
     let closed = legs.closes(settings.twist, tolerance);
-    let frame = Frame { turn, last: legs.last(), corners: legs.corners(), cut: legs.cut_at_start(), closed };
+    let frame = PathFrame { turn, last: legs.last(), corners: legs.corners(), cut: legs.cut_at_start(), closed };
     let surface = made(profile, path, frame, origin, tolerance);
     sweeps_area(&surface, profile, tolerance)?;
     Ok(surface)
@@ -120,12 +120,12 @@ pub fn moved_by(
     }
     let closed = path.is_closed(tolerance);
     let corners = path.kinks(tolerance).into_iter().filter(|f| *f > 0.0).collect();
-    let frame = Frame { turn: all, last: turn(1.0), corners, cut: false, closed };
+    let frame = PathFrame { turn: all, last: turn(1.0), corners, cut: false, closed };
     Ok((made(profile, path, frame, settings.origin, tolerance), Vec::new()))
 }
 
 /// How a profile moves.
-struct Frame {
+struct PathFrame {
     turn: Matrices,
     /// The rotation at the end.
     last: DMat3,
@@ -136,14 +136,14 @@ struct Frame {
     closed: bool,
 }
 
-fn made(profile: &Chain, path: &Chain, frame: Frame, origin: Origin, tolerance: &Tolerance) -> Surface {
+fn made(profile: &Chain, path: &Chain, frame: PathFrame, origin: Origin, tolerance: &Tolerance) -> Surface {
     let mut way = Rail::new(path.clone(), Map::identity());
     way.set_kinks(frame.corners.iter().map(|f| (*f, *f)).collect());
-    along_way(profile, path, (way, &[]), frame, origin, tolerance)
+    along_way(profile, path, way, &[], frame, origin, tolerance)
 }
 
 /// `across` are fractions of the profile at which the surface is parted beside its kinks.
-fn along_way(profile: &Chain, path: &Chain, (way, across): (Rail, &[f64]), frame: Frame, origin: Origin, tolerance: &Tolerance) -> Surface {
+fn along_way(profile: &Chain, path: &Chain, way: Rail, across: &[f64], frame: PathFrame, origin: Origin, tolerance: &Tolerance) -> Surface {
     let (rail, mut kinks) = kinked(profile, tolerance);
     let near = tolerance.point / profile.length();
     kinks.extend(across.iter().copied().filter(|f| kinks.iter().all(|k| (k - f).abs() > near)).collect::<Vec<_>>());
@@ -197,8 +197,8 @@ fn folds(surface: &Surface, path: &Chain, fraction: &dyn Fn(f64) -> Option<f64>,
     let (us, vs) = surface.breaks();
     let path_breaks = chain_breaks(path);
     let (us, vs) = (inside(if us.is_empty() { path_breaks } else { us }), inside(vs));
-    let lean = |list: &[f64]| list.iter().map(|x| (*x, OneSided::After)).collect::<Vec<_>>();
-    let jets = surface.jets(&lean(&us), &lean(&vs));
+    let side = |list: &[f64]| list.iter().map(|x| (*x, OneSided::After)).collect::<Vec<_>>();
+    let jets = surface.jets(&side(&us), &side(&vs));
     let mut worst: Option<(f64, usize)> = None;
     for (k, jet) in jets.iter().enumerate() {
         let Some(f) = fraction(us[k % us.len()]) else { continue };

@@ -16,7 +16,7 @@ use crate::geometry::{Curve, Kind, Nurbs};
 use crate::network::Chain;
 use crate::surface::data::breaks::chain_breaks;
 
-/// Pieces of a smooth stretch of a section, at most.
+/// Pieces of a smooth part of a section, at most.
 const MOST: usize = 1 << 10;
 /// How often the distance is doubled within which a piece is one.
 const WIDENED: usize = 32;
@@ -40,13 +40,13 @@ impl Deformation {
     /// From anchors (parameter of the section, point) to their targets, after a turn about the first one.
     pub fn new(anchors: &[(f64, DVec3)], targets: &[DVec3], turn: DMat3, tolerance: &Tolerance) -> Self {
         let (from, to) = (anchors[0].1, targets[0]);
-        let carried: Vec<DVec3> = anchors.iter().map(|a| to + turn * (a.1 - from)).collect();
+        let moved: Vec<DVec3> = anchors.iter().map(|a| to + turn * (a.1 - from)).collect();
         let n = targets.len() as f64;
-        let centres = (carried.iter().sum::<DVec3>() / n, targets.iter().sum::<DVec3>() / n);
+        let centres = (moved.iter().sum::<DVec3>() / n, targets.iter().sum::<DVec3>() / n);
         let mean = |points: &[DVec3], c: DVec3| points.iter().map(|p| p.distance(c)).sum::<f64>() / n;
-        let (before, after) = (mean(&carried, centres.0), mean(targets, centres.1));
+        let (before, after) = (mean(&moved, centres.0), mean(targets, centres.1));
         let scale = if targets.len() == 1 || before <= tolerance.point { 1.0 } else { after / before };
-        let left = |(k, q): (usize, &DVec3)| (anchors[k].0, *q - (centres.1 + (carried[k] - centres.0) * scale));
+        let left = |(k, q): (usize, &DVec3)| (anchors[k].0, *q - (centres.1 + (moved[k] - centres.0) * scale));
         let rest = targets.iter().enumerate().map(left).collect();
         Self { turn, from, to, centres, scale, rest }
     }
@@ -72,8 +72,8 @@ impl Deformation {
 
     /// A point of the section that moves with what is left over at a parameter.
     pub fn point(&self, p: DVec3, t: f64) -> DVec3 {
-        let carried = self.to + self.turn * (p - self.from);
-        self.centres.1 + (carried - self.centres.0) * self.scale + self.rest(t)
+        let moved = self.to + self.turn * (p - self.from);
+        self.centres.1 + (moved - self.centres.0) * self.scale + self.rest(t)
     }
 
     /// All pieces; `breaks` are the section's parameters at their ends.

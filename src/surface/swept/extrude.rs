@@ -1,4 +1,4 @@
-//! `extrude`: a profile carried straight.
+//! `extrude`: a profile translated along a straight line.
 
 use glam::DVec3;
 
@@ -87,7 +87,7 @@ pub(crate) fn kinked(profile: &Chain, tolerance: &Tolerance) -> (Rail, Vec<f64>)
     (rail, lines.into_iter().map(|line| line.0).collect())
 }
 
-/// E624 where a stretch of the profile (longer than a point) is carried along itself: (u, v) are the way and the profile.
+/// E624 where a part of the profile (longer than a point) is translated along itself: (u, v) are the way and the profile.
 pub(crate) fn sweeps_area(surface: &Surface, profile: &Chain, tolerance: &Tolerance) -> Result<()> {
     const SAMPLES: usize = 16;
     const WAYS: [f64; 4] = [0.07, 0.31, 0.62, 0.93];

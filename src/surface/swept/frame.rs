@@ -1,7 +1,7 @@
 //! Rotation-minimising frames along a path by double reflection [Wang, Jüttler, Zheng & Liu 2008].
 //!
 //! A step reflects the frame in the plane between two points, then in the plane that brings the tangent to where it
-//! belongs. Both are exact isometries, and the step run backwards undoes itself, so that the error of a stretch of n steps
+//! belongs. Both are exact isometries, and the step run backwards undoes itself, so that the error of a part of n steps
 //! is a series in n⁻⁴, n⁻⁶, …: Romberg's table over halved steps takes it down to rounding.
 
 use glam::{DMat3, DVec3};
@@ -12,14 +12,14 @@ use crate::network::Chain;
 
 /// Rows of the table, at most.
 const ROWS: usize = 6;
-/// A stretch is halved this often, at most.
+/// A part is halved this often, at most.
 const DEPTH: usize = 12;
 
 /// A place of a path: point and unit tangent.
-pub type Place = (DVec3, DVec3);
+pub type PathPlace = (DVec3, DVec3);
 
 /// Point and unit tangent at a fraction, from the side before it where they jump.
-pub fn place(path: &Chain, f: f64, before: bool) -> Place {
+pub fn place(path: &Chain, f: f64, before: bool) -> PathPlace {
     let jet = if before { path.jet_before(f) } else { path.jet(f) };
     (jet.p, jet.d1.normalize_or_zero())
 }
@@ -30,8 +30,8 @@ fn mirrored(v: DVec3, by: DVec3) -> DVec3 {
     if square == 0.0 { v } else { v - by * (2.0 * by.dot(v) / square) }
 }
 
-/// A vector normal to the first tangent, carried to the second place without turning about the way.
-pub fn step(from: Place, to: Place, normal: DVec3) -> DVec3 {
+/// A vector normal to the first tangent, transported to the second place without turning about the way.
+pub fn step(from: PathPlace, to: PathPlace, normal: DVec3) -> DVec3 {
     let by = to.0 - from.0;
     if by == DVec3::ZERO {
         return bent(from.1, to.1, normal);
@@ -49,8 +49,8 @@ pub fn bent(from: DVec3, to: DVec3, v: DVec3) -> DVec3 {
     v * cosine + axis.cross(v) + axis * (axis.dot(v) / (1.0 + cosine))
 }
 
-/// Carries a normal from one fraction of a smooth stretch to another, in `steps` double reflections.
-pub fn carried(path: &Chain, (from, to): (f64, f64), normal: DVec3, steps: usize) -> DVec3 {
+/// Transports a normal from one fraction of a smooth part to another, in `steps` double reflections.
+pub fn transported_normal(path: &Chain, (from, to): (f64, f64), normal: DVec3, steps: usize) -> DVec3 {
     let mut here = place(path, from, false);
     let mut normal = normal;
     for k in 1..=steps {
@@ -62,7 +62,7 @@ pub fn carried(path: &Chain, (from, to): (f64, f64), normal: DVec3, steps: usize
     normal
 }
 
-/// Like [`carried`], as exact as rounding allows: a stretch on which the table does not settle is halved.
+/// Like [`transported_normal`], as exact as rounding allows: a part on which the table does not settle is halved.
 pub fn transported(path: &Chain, from_to: (f64, f64), normal: DVec3) -> DVec3 {
     halved(path, from_to, normal, DEPTH)
 }
@@ -80,12 +80,12 @@ fn halved(path: &Chain, (from, to): (f64, f64), normal: DVec3, depth: usize) -> 
 /// The last value of the table, and whether it has settled.
 fn extrapolated(path: &Chain, from_to: (f64, f64), normal: DVec3) -> (DVec3, bool) {
     let (_, tangent) = place(path, from_to.1, true);
-    let first = carried(path, from_to, normal, 1);
+    let first = transported_normal(path, from_to, normal, 1);
     let across = tangent.cross(first);
     let angle = |v: DVec3| math::atan2(v.dot(across), v.dot(first));
     let (mut row, mut settled) = (vec![0.0], false);
     for k in 1..ROWS {
-        let mut next = vec![angle(carried(path, from_to, normal, 1 << k))];
+        let mut next = vec![angle(transported_normal(path, from_to, normal, 1 << k))];
         let mut power = 16.0;
         for before in &row {
             let last = next[next.len() - 1];
@@ -121,11 +121,11 @@ mod tests {
     use crate::geometry::construct::build::helix;
 
     /// The helix (2 cos t, 2 sin t, t/2) once round, with the angle of the end's frame to the normal of the curve there.
-    fn end_angle(carry: impl Fn(&Chain, DVec3) -> DVec3) -> f64 {
+    fn end_angle(transport: impl Fn(&Chain, DVec3) -> DVec3) -> f64 {
         let pitch = std::f64::consts::PI;
         let curve = helix(DVec3::ZERO, DVec3::Z, DVec3::new(2.0, 0.0, 0.0), pitch, 1.0, Origin::NONE).expect("a helix");
         let path = Chain::of_curve(&curve);
-        let end = carry(&path, DVec3::new(-1.0, 0.0, 0.0));
+        let end = transport(&path, DVec3::new(-1.0, 0.0, 0.0));
         let (tangent, frenet) = (place(&path, 1.0, true).1, DVec3::new(-1.0, 0.0, 0.0));
         math::atan2(end.dot(tangent.cross(frenet)), end.dot(frenet))
     }
@@ -134,7 +134,7 @@ mod tests {
     fn frames_on_a_helix_are_those_of_the_reference() {
         for (steps, angle) in [(25, -1.5238967438213686), (50, -1.5238963049255685), (100, -1.5238962775223193), (200, -1.5238962758100487)]
         {
-            let found = end_angle(|path, normal| carried(path, (0.0, 1.0), normal, steps));
+            let found = end_angle(|path, normal| transported_normal(path, (0.0, 1.0), normal, steps));
             assert!((found - angle).abs() < 1e-11, "{steps}: {found}");
         }
         let quarter = |k: u8| (f64::from(k) / 8.0, f64::from(k + 1) / 8.0);

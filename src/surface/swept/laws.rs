@@ -153,7 +153,7 @@ impl<'a> Main<'a> {
     }
 
     /// The fraction of the main guide whose station holds a point; none where there is no such place.
-    pub fn carried(&self, p: DVec3) -> Option<f64> {
+    pub fn fraction_of(&self, p: DVec3) -> Option<f64> {
         let value = |f: f64| -> (f64, bool) {
             let jet = self.chain.jet(f);
             match self.law {

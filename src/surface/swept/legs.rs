@@ -11,7 +11,7 @@ use crate::surface::faults::SweepFault;
 use crate::surface::shapes::matrices::Matrices;
 use crate::surface::swept::frame::{bent, frame, place, transported, twisted};
 
-/// A frame is carried over at most this share of the path at once, and over as much as turns the tangent by so many radians.
+/// A frame is transported over at most this share of the path at once, and over as much as turns the tangent by so many radians.
 const STEP: f64 = 1.0 / 64.0;
 const TURN: f64 = 0.5;
 
@@ -39,7 +39,7 @@ fn bisector(before: DVec3, after: DVec3) -> DVec3 {
     (before + after).normalize_or_zero()
 }
 
-/// E636 for a stretch of a path along which no frame can be carried: at the end of it where it turns more at once.
+/// E636 for a part of a path along which no frame can be transported: at the end of it where it turns more at once.
 pub fn no_frame(path: &Chain, (a, b): (f64, f64)) -> Fault {
     let step = NUDGE * (b - a);
     let turn = |f: f64, g: f64| place(path, f, false).1.dot(place(path, g, true).1);
@@ -49,7 +49,7 @@ pub fn no_frame(path: &Chain, (a, b): (f64, f64)) -> Fault {
 }
 
 impl<'a> Legs<'a> {
-    /// Carries a frame along the whole path; a closed path gets what its frame lacks enclosure over its length, then `twist`.
+    /// Transports a frame along the whole path; what the frame of a closed path lacks is distributed along it, then `twist` is added.
     ///
     /// E636 where the path turns back on itself.
     pub fn new(path: &'a Chain, twist: f64, tolerance: &Tolerance) -> Result<Self> {
@@ -187,7 +187,7 @@ impl<'a> Legs<'a> {
         (self.legs[leg].from, self.legs[leg].to)
     }
 
-    /// Ends of its smooth stretches, its own end the last.
+    /// Ends of its smooth parts, its own end the last.
     pub fn stops(&self, leg: usize) -> Vec<f64> {
         self.legs[leg].stops(self.path)
     }
@@ -219,7 +219,7 @@ impl Leg {
         inner.chain(std::iter::once(self.to)).collect()
     }
 
-    /// The normal at a fraction, carried from the nearest one known before it in steps that turn little.
+    /// The normal at a fraction, transported from the nearest one known before it in steps that turn little.
     fn normal(&mut self, path: &Chain, f: f64) -> DVec3 {
         loop {
             let k = self.normals.partition_point(|known| known.0 <= f).max(1) - 1;

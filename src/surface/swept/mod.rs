@@ -8,6 +8,7 @@ pub mod laws;
 pub mod legs;
 pub mod marks;
 pub mod revolve;
+mod ribs;
 pub mod rounded;
 pub mod sections;
 pub mod single;

@@ -24,7 +24,7 @@ pub struct Rounded {
 }
 
 /// One turn about a corner.
-struct Turn {
+struct RoundedTurn {
     axis: DVec3,
     angle: f64,
     base: DMat3,
@@ -37,7 +37,7 @@ impl Rounded {
     pub fn new(legs: &mut Legs, profile: &Chain, tolerance: &Tolerance) -> Option<Self> {
         let path = legs.path();
         let foot = path.start();
-        let mut turns: Vec<Option<Turn>> = Vec::new();
+        let mut turns: Vec<Option<RoundedTurn>> = Vec::new();
         let (mut crossings, mut inside) = (Vec::new(), None::<(DVec3, f64)>);
         for k in 0..legs.count() {
             let Some((at, before, after)) = legs.corner_after(k) else {
@@ -54,7 +54,7 @@ impl Rounded {
             let places = samples(profile);
             let reach = places.iter().map(|f| arm(*f)).fold(0.0, f64::max);
             // On the axis nothing moves.
-            turns.push((reach > tolerance.point).then_some(Turn { axis, angle, base, reach }));
+            turns.push((reach > tolerance.point).then_some(RoundedTurn { axis, angle, base, reach }));
             let near = tolerance.point;
             let least = places.iter().copied().min_by(|a, b| side(*a).total_cmp(&side(*b))).unwrap_or(0.0);
             if side(least) < -near {
@@ -93,7 +93,7 @@ impl Rounded {
 }
 
 /// The rotations over u, and u with the fractions of the path at the ends of runs and turns.
-fn fitted(legs: &mut Legs, turns: &[Option<Turn>]) -> Option<(Matrices, Vec<(f64, f64)>)> {
+fn fitted(legs: &mut Legs, turns: &[Option<RoundedTurn>]) -> Option<(Matrices, Vec<(f64, f64)>)> {
     let length = legs.path().length();
     let whole = length + turns.iter().flatten().map(|t| t.angle * t.reach).sum::<f64>();
     let mut all = Matrices::empty();

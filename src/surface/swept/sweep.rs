@@ -1,4 +1,4 @@
-//! `sweep`: sections carried along guides by a law.
+//! `sweep`: sections swept along guides by a law.
 
 use glam::DVec3;
 
@@ -19,7 +19,7 @@ use crate::surface::faults::{BorderFault, SweepFault};
 use crate::surface::rails::rail::Rail;
 use crate::surface::rails::reparam::{Map, Reparam};
 use crate::surface::shapes::blend::Blend;
-use crate::surface::shapes::weights::{Axis, Rule};
+use crate::surface::shapes::weights::{BlendAxis, Rule};
 use crate::surface::swept::laws::Law;
 use crate::surface::swept::sections::Guide;
 use crate::surface::swept::single::single;
@@ -113,7 +113,7 @@ fn local(
             rails.push(first);
         }
     }
-    let blend = Blend::new(Axis::new(nodes.0, Rule::Linear), Axis::new(nodes.1, Rule::Linear), along_v, along_u);
+    let blend = Blend::new(BlendAxis::new(nodes.0, Rule::Linear), BlendAxis::new(nodes.1, Rule::Linear), along_v, along_u);
     let mut notes = Vec::new();
     (finish(blend, made, tolerance, &mut notes), notes)
 }

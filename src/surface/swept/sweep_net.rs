@@ -1,16 +1,16 @@
 //! The net of a sweep: stations along the main guide, a section at each, and the guides between.
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
 use crate::base::fault::{Fault, Result, ValueFault};
+use crate::base::math;
 use crate::base::origin::Origin;
 use crate::base::tolerance::{NUDGE, Tolerance};
-use crate::base::{job, math};
 use crate::network::Chain;
-use crate::surface::faults::{SectionFault, SweepFault};
-use crate::surface::swept::deform::{self, Deformation, Pieces};
+use crate::surface::faults::SweepFault;
 use crate::surface::swept::laws::{Law, Main, Station, check_section, plane_normal, samples};
 use crate::surface::swept::marks::Marks;
+use crate::surface::swept::ribs::Given;
 use crate::surface::swept::sections::{Guide, Section, against, aligned, apart};
 use crate::surface::swept::synchronized::{self, Divided};
 
@@ -56,7 +56,7 @@ pub struct SweepNet {
     pub notes: Vec<Fault>,
 }
 
-/// Makes the net, or tells which guide is too short for it.
+/// Makes the net, or says which guide is too short for it.
 pub fn net(
     sections: &[Chain],
     guides: &[Guide],
@@ -98,7 +98,8 @@ pub fn net(
     let marks = Marks::new(&sections, &order, closed.1, tolerance)?;
     let mut made =
         SweepNet { guides, order, ribs: Vec::new(), breaks: marks.mean(), places: marks.places.clone(), closed, notes: Vec::new() };
-    ribs(&mut made, &sections, &marks, (&ws, fractions), &mut main, law, origin, tolerance)?;
+    let given = Given { sections: &sections, marks: &marks, law, origin, tolerance };
+    given.ribs(&mut made, &ws, fractions, &mut main)?;
     Ok(Ok(made))
 }
 
@@ -182,7 +183,7 @@ fn stations(main: &mut Main, guides: &[Guide], sections: &[Section], law: Law, c
     for (j, guide) in guides.iter().enumerate().skip(1) {
         let corners = guide.chain.kinks(tolerance);
         for f in guide.breaks(tolerance) {
-            let w = if law == Law::Synchronized { divided.on_main(j, f) } else { main.carried(guide.chain.point(f)).unwrap_or(-1.0) };
+            let w = if law == Law::Synchronized { divided.on_main(j, f) } else { main.fraction_of(guide.chain.point(f)).unwrap_or(-1.0) };
             if corners.iter().any(|c| (c - f).abs() <= NUDGE) { offer(w) } else { knots.push(w) }
         }
     }
@@ -298,108 +299,4 @@ fn on_guides(
         }
     }
     Ok(Ok(row))
-}
-
-#[allow(clippy::too_many_arguments, reason = "the parts of one step")]
-fn ribs(
-    made: &mut SweepNet,
-    sections: &[Section],
-    marks: &Marks,
-    (ws, fractions): (&[f64], Vec<Vec<f64>>),
-    main: &mut Main,
-    law: Law,
-    origin: Origin,
-    tolerance: &Tolerance,
-) -> Result<()> {
-    let all_given = ws.iter().all(|w| sections.iter().any(|s| s.on_guides[0] == *w));
-    let mut pieces: Vec<Pieces> = Vec::new();
-    if !all_given {
-        for (section, row) in sections.iter().zip(&marks.rows) {
-            pieces.push(deform::cut(&section.chain, row, tolerance)?);
-        }
-        deform::level(&mut pieces);
-    }
-    let divided = Divided { guides: &made.guides, sections };
-    let returns = made.closed.0 && sections.len() == 1;
-    // Of each section those by ascending and by descending fractions.
-    let synchronized: Vec<[Vec<DMat3>; 2]> = match law {
-        Law::Synchronized if !all_given => {
-            let carried = |s: &Section| [true, false].map(|up| divided.turns(s.on_guides[0], ws, up, (made.closed.0, returns)));
-            sections.iter().map(carried).collect()
-        }
-        _ => Vec::new(),
-    };
-    for (place, (&w, on_guides)) in ws.iter().zip(fractions).enumerate() {
-        job::poll();
-        if let Some(k) = sections.iter().position(|s| s.on_guides[0] == w) {
-            made.ribs.push(Rib { w, on_guides, chain: sections[k].chain.clone(), breaks: marks.rows[k].clone() });
-            continue;
-        }
-        let station = main.station(w);
-        let targets: Vec<DVec3> = made.order.iter().map(|&j| made.guides[j].chain.point(on_guides[j])).collect();
-        let n = sections.len();
-        let after = sections.partition_point(|s| s.on_guides[0] < w);
-        let neighbours: Vec<usize> = match (after, made.closed.0) {
-            (_, true) if n > 1 => vec![(after + n - 1) % n, after % n],
-            (0, _) => vec![0],
-            (k, _) if k == n => vec![n - 1],
-            (k, _) => vec![k - 1, k],
-        };
-        let mut copies = Vec::with_capacity(2);
-        for (nth, &k) in neighbours.iter().enumerate() {
-            let section = &sections[k];
-            let anchors: Vec<(f64, DVec3)> = made.order.iter().map(|&j| (section.anchors[j], section.anchor(j))).collect();
-            let turn = if law == Law::Synchronized {
-                let ascending = if neighbours.len() == 2 { nth == 0 } else { section.on_guides[0] <= w };
-                synchronized[k][usize::from(!ascending)][place]
-            } else {
-                station.turn * main.station(section.on_guides[0]).turn.transpose()
-            };
-            let deformation = Deformation::new(&anchors, &targets, turn, tolerance);
-            let scale = deformation.scale;
-            if !(LEAST_SCALE..=1.0 / LEAST_SCALE).contains(&scale) {
-                let fault = SectionFault::Scaled { section: section.chain.origin(), scale, at: station.at };
-                made.notes.push(fault.into());
-            }
-            let deformation = if made.closed.1 { deformation.closing() } else { deformation };
-            copies.push(deformation.pieces(&pieces[k], &marks.rows[k]));
-        }
-        let found = match copies.as_slice() {
-            [a, b] => {
-                let (from, to) = (sections[neighbours[0]].on_guides[0], sections[neighbours[1]].on_guides[0]);
-                let to = if to <= from { to + 1.0 } else { to };
-                let w = if w < from { w + 1.0 } else { w };
-                deform::blended(a, b, (w - from) / (to - from), made.closed.1, tolerance)
-            }
-            _ => copies.swap_remove(0),
-        };
-        let (chain, breaks) = deform::curve(&found, origin);
-        made.ribs.push(Rib { w, on_guides, chain, breaks });
-    }
-    if law == Law::Normal {
-        made.notes.extend(crossing(&made.ribs, main.chain, origin));
-    }
-    Ok(())
-}
-
-/// Least and one over the largest scale of a section that is no warning.
-const LEAST_SCALE: f64 = 0.05;
-
-/// W639 where a section reaches beyond the centre of the main guide's bend.
-fn crossing(ribs: &[Rib], main: &Chain, origin: Origin) -> Option<Fault> {
-    let mut worst: Option<(f64, DVec3, f64, f64)> = None;
-    for rib in ribs {
-        let jet = main.jet(rib.w);
-        let bend = jet.d2 / (main.length() * main.length());
-        for f in samples(&rib.chain) {
-            let p = rib.chain.point(f);
-            let share = (p - jet.p).dot(bend);
-            if share > 1.0 && worst.is_none_or(|w| share > w.0) {
-                worst = Some((share, p, p.distance(jet.p), 1.0 / bend.length()));
-            }
-        }
-    }
-    worst.map(|(_, at, reach, radius)| {
-        SweepFault::SelfIntersects { surface: origin, path: main.origin(), at, reach, radius: Some(radius) }.into()
-    })
 }

@@ -51,11 +51,11 @@ impl Divided<'_> {
         turn
     }
 
-    /// The rotations of a section at all stations, carried from its own one to the others by ascending or descending fractions;
+    /// The rotations of a section at all stations, transported from its own one to the others by ascending or descending fractions;
     /// past the end of closed guides to the last one that is left.
     ///
-    /// Where `returns`, it is carried once round, and what it lacks then to stand as at first is enclosure over the way.
-    pub fn turns(&self, from: f64, ws: &[f64], ascending: bool, (closed, returns): (bool, bool)) -> Vec<DMat3> {
+    /// Where `returns`, it is transported once round, and the rotation that it lacks then to be as at first is distributed along the way.
+    pub fn turns(&self, from: f64, ws: &[f64], ascending: bool, closed: bool, returns: bool) -> Vec<DMat3> {
         let n = ws.len();
         let mut all = vec![DMat3::IDENTITY; n];
         let Some(start) = ws.iter().position(|w| *w == from) else { return all };

@@ -18,10 +18,10 @@ use crate::surface::faults::CutFault;
 use crate::surface::rails::trim_curve::TrimCurve;
 use crate::surface::trims::cutters::Piece;
 use crate::surface::trims::faces::{Edge, Half, components, followers, is_plane, loops};
-use crate::surface::trims::trim::shifts;
+use crate::surface::trims::trim_loop::shifts;
 
 /// The loops of a face, each half edge with the turns by which it is moved in (u, v).
-pub(crate) type Face = Vec<Vec<(Half, DVec2)>>;
+pub(crate) type FaceLoops = Vec<Vec<(Half, DVec2)>>;
 
 /// Ends of twins are no farther from each other than this, in (u, v) after whole turns.
 const NEAR: f64 = 0.1;
@@ -123,8 +123,8 @@ impl<'a> Cells<'a> {
         let twins = self.twins.clone();
         self.twins.retain(|k, (other, _)| twins.get(other).is_some_and(|back| back.0 == *k));
         // A part of a closed surface may have one side of a seam only; the whole has both.
-        let lone = seams.into_iter().find(|k| self.base.domain() != Domain::Loop && !self.twins.contains_key(k));
-        lone.map_or(Ok(()), |k| Err(self.fault("a seam has one side", (k, false))))
+        let single = seams.into_iter().find(|k| self.base.domain() != Domain::Loop && !self.twins.contains_key(k));
+        single.map_or(Ok(()), |k| Err(self.fault("a seam has one side", (k, false))))
     }
 
     fn fault(&self, what: &'static str, half: Half) -> Fault {
@@ -157,13 +157,14 @@ impl<'a> Cells<'a> {
         for k in row.iter().map(|h| h.0) {
             let Some(own) = chain(k) else { continue };
             let piece = &self.pieces[k];
-            let TrimCurve::Pcurve(pcurve) = &piece.course else { continue };
+            let TrimCurve::Pcurve(pcurve) = &piece.trim_curve else { continue };
             let places = (1..MAX_SAMPLES).map(|n| pcurve.fraction(n as f64 / MAX_SAMPLES as f64)).map(|f| (own.point(f), pcurve.guess(f)));
             // Where pieces part they are near to each other in any case.
             for (at, uv) in places.filter(|(p, _)| p.distance(piece.p.0).min(p.distance(piece.p.2)) > beside * near) {
-                let passes =
-                    |course: &TrimCurve| course.places().windows(2).any(|w| TrimCurve::Line(w[0].into(), w[1].into()).touches(uv, NEAR));
-                for other in (0..self.pieces.len()).filter(|other| *other != k && passes(&self.pieces[*other].course)) {
+                let passes = |trim_curve: &TrimCurve| {
+                    trim_curve.places().windows(2).any(|w| TrimCurve::Line(w[0].into(), w[1].into()).touches(uv, NEAR))
+                };
+                for other in (0..self.pieces.len()).filter(|other| *other != k && passes(&self.pieces[*other].trim_curve)) {
                     let apart = chain(other).map_or(f64::INFINITY, |chain| chain.closest(at).2);
                     if apart <= near && least.as_ref().is_none_or(|least| apart < least.0) {
                         least = Some((apart, fault(k, other, at, apart)));
@@ -176,7 +177,7 @@ impl<'a> Cells<'a> {
 
     fn area(&self, row: &[Half]) -> f64 {
         let each = |(k, backwards): &Half| {
-            let mut places = self.pieces[*k].course.places();
+            let mut places = self.pieces[*k].trim_curve.places();
             if *backwards {
                 places.reverse();
             }
@@ -191,14 +192,14 @@ impl<'a> Cells<'a> {
     fn holds(&self, row: &[Half], p: DVec2) -> bool {
         let turn = |(k, backwards): &Half| {
             let piece = &self.pieces[*k];
-            let turn = self.base.turn_along(&piece.course, piece.own_chain(), p);
+            let turn = self.base.turn_along(&piece.trim_curve, piece.own_chain(), p);
             if *backwards { -turn } else { turn }
         };
         row.iter().map(turn).sum::<f64>().abs() > std::f64::consts::PI
     }
 
     /// The face around a place: that of the smallest cell whose outer loop goes round it.
-    pub fn face(&self, foot: DVec2) -> Result<Option<Face>> {
+    pub fn face(&self, foot: DVec2) -> Result<Option<FaceLoops>> {
         self.at(foot).map(|c| self.joined(c).map(|(face, _)| face)).transpose()
     }
 
@@ -212,7 +213,7 @@ impl<'a> Cells<'a> {
         let step = self.step;
         let places =
             [DVec2::ZERO, DVec2::X * step, DVec2::Y * step, DVec2::X * -step, DVec2::Y * -step, DVec2::splat(step), DVec2::splat(-step)];
-        let on_border = |p: DVec2| self.pieces.iter().any(|piece| piece.course.touches(p, 0.5 * step));
+        let on_border = |p: DVec2| self.pieces.iter().any(|piece| piece.trim_curve.touches(p, 0.5 * step));
         let mut copies = self.base.copies(foot.into());
         copies.extend(shifts(self.base).into_iter().map(|by| foot + by));
         let near = places.into_iter().flat_map(|d| copies.iter().map(move |at| *at + d));
@@ -240,7 +241,7 @@ impl<'a> Cells<'a> {
     }
 
     /// The faces that some cells make, each once; they go on over no piece but those of seams.
-    pub fn faces_of(&self, kept: &[bool]) -> Result<Vec<Face>> {
+    pub fn faces_of(&self, kept: &[bool]) -> Result<Vec<FaceLoops>> {
         let (mut found, mut seen) = (Vec::new(), BTreeSet::new());
         for c in (0..self.cells.len()).filter(|c| kept[*c]) {
             if !seen.contains(&c) {
@@ -253,7 +254,7 @@ impl<'a> Cells<'a> {
     }
 
     /// All faces, each once.
-    pub fn faces(&self) -> Result<Vec<Face>> {
+    pub fn faces(&self) -> Result<Vec<FaceLoops>> {
         self.faces_of(&vec![true; self.cells.len()])
     }
 
@@ -266,7 +267,7 @@ impl<'a> Cells<'a> {
     }
 
     /// The face of a cell with what lies beyond seams, which are no borders of it, and the cells that it is made of.
-    fn joined(&self, first: usize) -> Result<(Face, BTreeSet<usize>)> {
+    fn joined(&self, first: usize) -> Result<(FaceLoops, BTreeSet<usize>)> {
         let (mut by, mut open) = (BTreeMap::from([(first, DVec2::ZERO)]), VecDeque::from([first]));
         let mut between: Vec<(usize, usize)> = Vec::new();
         while let Some(cell) = open.pop_front() {

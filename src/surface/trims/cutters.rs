@@ -17,14 +17,14 @@ use crate::surface::data::kind::Domain;
 use crate::surface::faults::BorderFault;
 use crate::surface::rails::side::{Border, Side, between};
 use crate::surface::rails::trim_curve::{Pcurve, TrimCurve};
-use crate::surface::trims::pcurve::{Off, is_pole};
-use crate::surface::trims::project::{Way, carried};
+use crate::surface::trims::pcurve::{OffSurface, is_pole};
+use crate::surface::trims::project::{Way, project};
 use crate::surface::trims::shared_runs;
-use crate::surface::trims::trim::{TrimLoop, natural};
+use crate::surface::trims::trim_loop::{TrimLoop, natural};
 
 /// A border of the surface or a cutter, whole.
 #[derive(Clone, Debug)]
-pub(crate) struct Cutter {
+pub(crate) struct DividingCurve {
     /// In the direction of the loop; `None` at a pole.
     pub chain: Option<Chain>,
     /// The border of the surface; `None` for a cutter.
@@ -33,17 +33,18 @@ pub(crate) struct Cutter {
     pub seam: bool,
     /// Which cutter.
     pub cutter: Option<usize>,
-    /// The chain is only drawn along the border to meet it.
-    drawn: bool,
+    /// The chain was only made along the border, to be met.
+    is_drawn: bool,
     cuts: Vec<f64>,
 }
 
-/// A part of a strand between two meetings.
+/// A part of a dividing curve between two meetings.
 #[derive(Clone, Debug)]
 pub(crate) struct Piece {
-    pub strand: usize,
+    /// Number of the dividing curve.
+    pub curve: usize,
     pub border: Border,
-    pub course: TrimCurve,
+    pub trim_curve: TrimCurve,
     /// Ends in (u, v).
     pub uv: (DVec2, DVec2),
     /// Ends and a point between.
@@ -55,7 +56,7 @@ pub(crate) struct Piece {
 }
 
 impl Piece {
-    /// The chain whose fractions its course in (u, v) knows.
+    /// The chain whose fractions its trim curve in (u, v) knows.
     pub fn own_chain(&self) -> Option<&Chain> {
         if let Side::Chain { chain, .. } = &self.border.side { Some(chain) } else { None }
     }
@@ -67,8 +68,8 @@ impl Piece {
         } else {
             self.uv.0 = place
         }
-        if let TrimCurve::Pcurve(pcurve) = &self.course {
-            self.course = TrimCurve::Pcurve(Arc::new(pcurve.as_ref().clone().ending(last, place)));
+        if let TrimCurve::Pcurve(pcurve) = &self.trim_curve {
+            self.trim_curve = TrimCurve::Pcurve(Arc::new(pcurve.as_ref().clone().ending(last, place)));
         }
     }
 }
@@ -83,26 +84,27 @@ pub(crate) enum Meets {
 }
 
 /// Borders and cutters with the places where they part each other.
-pub(crate) fn strands(base: &Surface, cutters: &[Chain], meets: Meets, tolerance: &Tolerance) -> Result<Vec<Cutter>> {
+pub(crate) fn dividing_curves(base: &Surface, cutters: &[Chain], meets: Meets, tolerance: &Tolerance) -> Result<Vec<DividingCurve>> {
     let mut all = Vec::new();
-    for walk in natural(base, tolerance)? {
-        let sides = walk.borders.len();
+    for trim_loop in natural(base, tolerance)? {
+        let sides = trim_loop.borders.len();
         for k in 0..sides {
-            let (border, course) = (walk.borders[k].clone(), walk.courses[k].clone());
-            let opposite = (sides == 4).then(|| walk.borders[(k + 2) % 4].turned());
-            all.push(of_border(base, (border, course), opposite, tolerance)?);
+            let (border, trim_curve) = (trim_loop.borders[k].clone(), trim_loop.trim_curves[k].clone());
+            let opposite = (sides == 4).then(|| trim_loop.borders[(k + 2) % 4].turned());
+            all.push(of_border(base, border, trim_curve, opposite, tolerance)?);
         }
     }
     for (k, chain) in cutters.iter().enumerate() {
-        let strand = Cutter { chain: Some(chain.clone()), border: None, seam: false, cutter: Some(k), drawn: false, cuts: Vec::new() };
-        all.push(strand);
+        let curve =
+            DividingCurve { chain: Some(chain.clone()), border: None, seam: false, cutter: Some(k), is_drawn: false, cuts: Vec::new() };
+        all.push(curve);
     }
     part(&mut all, meets, tolerance)?;
     Ok(all)
 }
 
 /// Both sides of a seam are cut at the same places.
-fn mirror_cuts(all: &mut [Cutter], tolerance: &Tolerance) {
+fn mirror_cuts(all: &mut [DividingCurve], tolerance: &Tolerance) {
     let seams: Vec<usize> = (0..all.len()).filter(|k| all[*k].seam && all[*k].chain.is_some()).collect();
     for &i in &seams {
         let Some(own) = all[i].chain.clone() else { continue };
@@ -122,33 +124,34 @@ fn mirror_cuts(all: &mut [Cutter], tolerance: &Tolerance) {
 
 pub(crate) fn of_border(
     base: &Surface,
-    (border, course): (Border, TrimCurve),
+    border: Border,
+    trim_curve: TrimCurve,
     opposite: Option<Border>,
     tolerance: &Tolerance,
-) -> Result<Cutter> {
+) -> Result<DividingCurve> {
     let along = |side: &Side| match side {
         Side::Chain { chain, from, to } => between(chain, *from, *to, tolerance).map(Some),
         _ => Ok(None),
     };
-    let is_seam = !matches!(border.side, Side::Pole(_)) && course.is_seam(base.closed());
+    let is_seam = !matches!(border.side, Side::Pole(_)) && trim_curve.is_seam(base.closed());
     let mut chain = along(&border.side)?;
     if chain.is_none() && is_seam {
         chain = opposite.map(|o| along(&o.side)).transpose()?.flatten();
     }
-    let mut drawn = false;
+    let mut is_drawn = false;
     if chain.is_none()
         && !matches!(border.side, Side::Pole(_))
-        && let TrimCurve::Line(a, b) = &course
+        && let TrimCurve::Line(a, b) = &trim_curve
     {
         let line = build::line(DVec3::new(a.0, a.1, 0.0), DVec3::new(b.0, b.1, 0.0), Origin::NONE)?;
-        chain = carried(base, &Chain::of_curve(&line), Way::Parameters, base.origin(), tolerance).ok().map(|c| Chain::of_curve(&c));
-        drawn = true;
+        chain = project(base, &Chain::of_curve(&line), Way::Parameters, base.origin(), tolerance).ok().map(|c| Chain::of_curve(&c));
+        is_drawn = true;
     }
-    Ok(Cutter { chain, border: Some((border, course)), seam: is_seam, cutter: None, drawn, cuts: Vec::new() })
+    Ok(DividingCurve { chain, border: Some((border, trim_curve)), seam: is_seam, cutter: None, is_drawn, cuts: Vec::new() })
 }
 
-/// Cuts strands where cutters meet them and each other.
-fn part(all: &mut [Cutter], meets: Meets, tolerance: &Tolerance) -> Result<()> {
+/// Cuts the curves where cutters meet them and each other.
+fn part(all: &mut [DividingCurve], meets: Meets, tolerance: &Tolerance) -> Result<()> {
     for j in 0..all.len() {
         let Some(b) = all[j].chain.clone() else { continue };
         if all[j].cutter.is_none() {
@@ -177,49 +180,51 @@ fn part(all: &mut [Cutter], meets: Meets, tolerance: &Tolerance) -> Result<()> {
         }
     }
     mirror_cuts(all, tolerance);
-    for strand in all {
-        let Some(chain) = &strand.chain else { continue };
+    for curve in all {
+        let Some(chain) = &curve.chain else { continue };
         let near = tolerance.point / chain.length();
         // A loop that is cut begins at a cut: its own start is no end.
-        strand.cuts.retain(|f| *f > near && *f < 1.0 - near);
-        strand.cuts.sort_by(f64::total_cmp);
-        strand.cuts.dedup_by(|b, a| *b - *a <= 2.0 * near);
-        let beside = [strand.cuts.first(), strand.cuts.last()].map(|cut| cut.is_some_and(|f| f.min(1.0 - f) <= 2.0 * near));
+        curve.cuts.retain(|f| *f > near && *f < 1.0 - near);
+        curve.cuts.sort_by(f64::total_cmp);
+        curve.cuts.dedup_by(|b, a| *b - *a <= 2.0 * near);
+        let beside = [curve.cuts.first(), curve.cuts.last()].map(|cut| cut.is_some_and(|f| f.min(1.0 - f) <= 2.0 * near));
         // Between two cuts a loop's own start is no reason to take them as one.
-        if !(chain.is_closed(tolerance) && strand.cuts.len() > 1 && beside == [true; 2]) {
-            strand.cuts.retain(|f| *f > 2.0 * near && *f < 1.0 - 2.0 * near);
+        if !(chain.is_closed(tolerance) && curve.cuts.len() > 1 && beside == [true; 2]) {
+            curve.cuts.retain(|f| *f > 2.0 * near && *f < 1.0 - 2.0 * near);
         }
-        strand.cuts.insert(0, 0.0);
-        strand.cuts.push(1.0);
+        curve.cuts.insert(0, 0.0);
+        curve.cuts.push(1.0);
     }
     Ok(())
 }
 
-/// The parts of all strands; cutters that run along a border or an earlier cutter count once, those beyond the border not at
+/// The parts of all dividing curves; cutters that run along a border or an earlier cutter count once, those beyond the border not at
 /// all. With the numbers of the cutters of which a part runs along something else.
-pub(crate) fn pieces(base: &Surface, strands: &[Cutter], tolerance: &Tolerance) -> Result<(Vec<Piece>, BTreeSet<usize>)> {
+pub(crate) fn pieces(base: &Surface, curves: &[DividingCurve], tolerance: &Tolerance) -> Result<(Vec<Piece>, BTreeSet<usize>)> {
     let (mut out, mut along): (Vec<Piece>, BTreeSet<usize>) = (Vec::new(), BTreeSet::new());
     let loops = if bounded(base) { natural(base, tolerance)? } else { Vec::new() };
-    for (k, strand) in strands.iter().enumerate() {
-        let Some(chain) = &strand.chain else { continue };
-        for w in strand.cuts.windows(2) {
-            let whole = strand.cuts.len() == 2;
+    for (k, curve) in curves.iter().enumerate() {
+        let Some(chain) = &curve.chain else { continue };
+        for w in curve.cuts.windows(2) {
+            let whole = curve.cuts.len() == 2;
             let run = if whole { chain.clone() } else { chain.slice(w[0], w[1], tolerance)? };
             let middle = run.point(MIDDLE);
             let places = ALONG.map(|f| run.point(f));
             let is_along = |c: &Chain| places.iter().all(|p| c.closest(*p).2 <= 2.0 * tolerance.point);
-            let lies_on = |other: &Cutter| other.chain.as_ref().is_some_and(is_along);
-            if let Some(cutter) = strand.cutter
-                && strands[..k].iter().any(lies_on)
+            let lies_on = |other: &DividingCurve| other.chain.as_ref().is_some_and(is_along);
+            if let Some(cutter) = curve.cutter
+                && curves[..k].iter().any(lies_on)
             {
                 along.insert(cutter);
                 continue;
             }
             // A cutter along a seam makes a border of it.
-            let seam = strand.seam && !strands.iter().any(|s| s.cutter.is_some() && lies_on(s));
-            let piece = match &strand.border {
-                Some((border, course)) if whole => of_whole(k, border, course, run, seam),
-                Some((border, course)) => of_part(base, (k, strand.drawn), (border, course), (run, (w[0], w[1])), tolerance, seam)?,
+            let seam = curve.seam && !curves.iter().any(|s| s.cutter.is_some() && lies_on(s));
+            let piece = match &curve.border {
+                Some((border, trim_curve)) => {
+                    let own = DividingBorder { curve: k, border, trim_curve, is_drawn: curve.is_drawn, seam };
+                    if whole { own.whole(&run) } else { own.part(base, &run, (w[0], w[1]), tolerance)? }
+                }
                 None => match within(base, &loops, middle) {
                     Some(start) => of_cutter(base, k, run, start, tolerance)?,
                     None => continue,
@@ -228,11 +233,11 @@ pub(crate) fn pieces(base: &Surface, strands: &[Cutter], tolerance: &Tolerance) 
             out.push(piece);
         }
     }
-    for (k, strand) in strands.iter().enumerate() {
-        if strand.chain.is_none()
-            && let Some((border, TrimCurve::Line(a, b))) = &strand.border
+    for (k, curve) in curves.iter().enumerate() {
+        if curve.chain.is_none()
+            && let Some((border, TrimCurve::Line(a, b))) = &curve.border
         {
-            let added = at_pole(base, (k, border), (DVec2::from(*a), DVec2::from(*b)), &mut out, tolerance);
+            let added = at_pole(base, k, border, (DVec2::from(*a), DVec2::from(*b)), &mut out, tolerance);
             out.extend(added);
         }
     }
@@ -250,71 +255,88 @@ pub(crate) fn within(base: &Surface, loops: &[TrimLoop], p: DVec3) -> Option<DVe
     if !bounded(base) {
         return Some(near.into());
     }
-    let inside = |at: &DVec2| loops.iter().map(|walk| walk.turning(base, *at)).sum::<f64>().abs() > std::f64::consts::PI;
+    let inside = |at: &DVec2| loops.iter().map(|trim_loop| trim_loop.turning(base, *at)).sum::<f64>().abs() > std::f64::consts::PI;
     base.copies(near).into_iter().find(inside)
 }
 
 /// Where a piece is asked where it lies: no place that is special for anything.
 const MIDDLE: f64 = 0.4873;
-/// Where a piece is compared with another strand; it runs along one that is near at all of them.
+/// Where a piece is compared with another curve; it runs along one that is near at all of them.
 const ALONG: [f64; 3] = [MIDDLE, 0.2327, 0.7719];
 
-fn of_whole(strand: usize, border: &Border, course: &TrimCurve, run: Chain, seam: bool) -> Piece {
-    let places = course.places();
-    let p = (run.start(), run.point(MIDDLE), run.end());
-    let uv = (places[0], places[places.len() - 1]);
-    Piece { strand, border: border.clone(), course: course.clone(), uv, p, seam, rim: true }
+/// A border as a dividing curve.
+struct DividingBorder<'a> {
+    /// Its number.
+    curve: usize,
+    border: &'a Border,
+    trim_curve: &'a TrimCurve,
+    /// Whether its curve was made for it.
+    is_drawn: bool,
+    /// Whether its pieces are seams.
+    seam: bool,
 }
 
-fn of_part(
-    base: &Surface,
-    (strand, drawn): (usize, bool),
-    (border, course): (&Border, &TrimCurve),
-    (run, (from, to)): (Chain, (f64, f64)),
-    tolerance: &Tolerance,
-    seam: bool,
-) -> Result<Piece> {
-    let about = |f: f64| match course {
-        TrimCurve::Line(a, b) => DVec2::from(*a).lerp(DVec2::from(*b), f),
-        TrimCurve::Pcurve(pcurve) => pcurve.share(f),
-    };
-    let p = (run.start(), run.point(MIDDLE), run.end());
-    let off = |off: Off| outside(base, &run, off, tolerance);
-    // From a pole the other end tells on which side of a seam the border runs.
-    let pcurve = if is_pole(base, about(from)) {
-        Pcurve::follow(base, (&run, 1.0, 0.0), about(to), tolerance.point).map(|pcurve| pcurve.turned())
-    } else {
-        Pcurve::follow(base, (&run, 0.0, 1.0), about(from), tolerance.point)
+impl DividingBorder<'_> {
+    /// The whole of it, along a curve.
+    fn whole(&self, run: &Chain) -> Piece {
+        let places = self.trim_curve.places();
+        let p = (run.start(), run.point(MIDDLE), run.end());
+        let uv = (places[0], places[places.len() - 1]);
+        Piece { curve: self.curve, border: self.border.clone(), trim_curve: self.trim_curve.clone(), uv, p, seam: self.seam, rim: true }
     }
-    .map_err(off)?
-    .into_poles(base, &run);
-    if !drawn {
-        let (uv, course) = (pcurve.ends(), TrimCurve::Pcurve(Arc::new(pcurve)));
-        return Ok(Piece { strand, border: Border::chain(run.clone(), false), course, uv, p, seam, rim: true });
+
+    /// The part between two fractions, along a curve.
+    fn part(&self, base: &Surface, run: &Chain, (from, to): (f64, f64), tolerance: &Tolerance) -> Result<Piece> {
+        let about = |f: f64| match self.trim_curve {
+            TrimCurve::Line(a, b) => DVec2::from(*a).lerp(DVec2::from(*b), f),
+            TrimCurve::Pcurve(pcurve) => pcurve.share(f),
+        };
+        let p = (run.start(), run.point(MIDDLE), run.end());
+        let off = |off: OffSurface| outside(base, run, off, tolerance);
+        // From a pole the other end decides on which side of a seam the border runs.
+        let pcurve = if is_pole(base, about(from)) {
+            Pcurve::follow(base, run, (1.0, 0.0), about(to), tolerance.point).map(|pcurve| pcurve.turned())
+        } else {
+            Pcurve::follow(base, run, (0.0, 1.0), about(from), tolerance.point)
+        }
+        .map_err(off)?
+        .into_poles(base, run);
+        if !self.is_drawn {
+            let (uv, trim_curve) = (pcurve.ends(), TrimCurve::Pcurve(Arc::new(pcurve)));
+            return Ok(Piece {
+                curve: self.curve,
+                border: Border::chain(run.clone(), false),
+                trim_curve,
+                uv,
+                p,
+                seam: self.seam,
+                rim: true,
+            });
+        }
+        // The border is straight in (u, v): its parts are.
+        let (a, b) = (about(0.0), about(1.0));
+        let onto = |q: DVec2, f: f64| {
+            let share = if f <= 0.0 || f >= 1.0 { f } else { (q - a).dot(b - a) / (b - a).length_squared() };
+            a.lerp(b, share)
+        };
+        let uv = (onto(pcurve.ends().0, from), onto(pcurve.ends().1, to));
+        let trim_curve = TrimCurve::Line(uv.0.into(), uv.1.into());
+        Ok(Piece { curve: self.curve, border: Border::straight(self.border.side.clone()), trim_curve, uv, p, seam: self.seam, rim: true })
     }
-    // The border is straight in (u, v): its parts are.
-    let (a, b) = (about(0.0), about(1.0));
-    let onto = |q: DVec2, f: f64| {
-        let share = if f <= 0.0 || f >= 1.0 { f } else { (q - a).dot(b - a) / (b - a).length_squared() };
-        a.lerp(b, share)
-    };
-    let uv = (onto(pcurve.ends().0, from), onto(pcurve.ends().1, to));
-    let course = TrimCurve::Line(uv.0.into(), uv.1.into());
-    Ok(Piece { strand, border: Border::straight(border.side.clone()), course, uv, p, seam, rim: true })
 }
 
 /// A piece of a cutter, with the place of its middle.
-fn of_cutter(base: &Surface, strand: usize, run: Chain, start: DVec2, tolerance: &Tolerance) -> Result<Piece> {
-    let off = |off: Off| outside(base, &run, off, tolerance);
-    let before = Pcurve::follow(base, (&run, MIDDLE, 0.0), start, tolerance.point).map_err(off)?;
-    let after = Pcurve::follow(base, (&run, MIDDLE, 1.0), start, tolerance.point).map_err(off)?;
+fn of_cutter(base: &Surface, curve: usize, run: Chain, start: DVec2, tolerance: &Tolerance) -> Result<Piece> {
+    let off = |off: OffSurface| outside(base, &run, off, tolerance);
+    let before = Pcurve::follow(base, &run, (MIDDLE, 0.0), start, tolerance.point).map_err(off)?;
+    let after = Pcurve::follow(base, &run, (MIDDLE, 1.0), start, tolerance.point).map_err(off)?;
     let pcurve = before.turned().then(&after).into_poles(base, &run);
     let p = (run.start(), run.point(MIDDLE), run.end());
     let (uv, border) = (pcurve.ends(), Border::chain(run.clone(), false));
-    Ok(Piece { strand, border, course: TrimCurve::Pcurve(Arc::new(pcurve)), uv, p, seam: false, rim: false })
+    Ok(Piece { curve, border, trim_curve: TrimCurve::Pcurve(Arc::new(pcurve)), uv, p, seam: false, rim: false })
 }
 
-fn outside(base: &Surface, run: &Chain, off: Off, tolerance: &Tolerance) -> Fault {
+fn outside(base: &Surface, run: &Chain, off: OffSurface, tolerance: &Tolerance) -> Fault {
     let (of, at) = (run.origin(), off.at);
     BorderFault::LoopOutsideSurface { of, surface: base.origin(), off: off.distance, at, tolerance: tolerance.point }.into()
 }
@@ -322,7 +344,8 @@ fn outside(base: &Surface, run: &Chain, off: Off, tolerance: &Tolerance) -> Faul
 /// A pole, parted where cutters run into it; ends beside an end of it are put there.
 fn at_pole(
     base: &Surface,
-    (strand, border): (usize, &Border),
+    curve: usize,
+    border: &Border,
     (a, b): (DVec2, DVec2),
     pieces: &mut [Piece],
     tolerance: &Tolerance,
@@ -331,7 +354,7 @@ fn at_pole(
     for piece in pieces {
         for last in [false, true] {
             let uv = if last { piece.uv.1 } else { piece.uv.0 };
-            // A pole may be as wide as the tolerance: where in (u, v) a piece ends tells whether it ends there.
+            // A pole may be as wide as the tolerance: where in (u, v) a piece ends decides whether it ends there.
             let share = (uv - a).dot(b - a) / (b - a).length_squared();
             if (uv - a.lerp(b, share)).length() > NUDGE {
                 continue;
@@ -349,8 +372,8 @@ fn at_pole(
         let at = |share: f64| a.lerp(b, share);
         let p = [w[0], 0.5 * (w[0] + w[1]), w[1]].map(|share| base.point(at(share).x, at(share).y));
         let uv = (at(w[0]), at(w[1]));
-        let course = TrimCurve::Line(uv.0.into(), uv.1.into());
-        Piece { strand, border: border.clone(), course, uv, p: p.into(), seam: false, rim: true }
+        let trim_curve = TrimCurve::Line(uv.0.into(), uv.1.into());
+        Piece { curve, border: border.clone(), trim_curve, uv, p: p.into(), seam: false, rim: true }
     };
     cuts.windows(2).map(piece).collect()
 }

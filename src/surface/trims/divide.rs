@@ -17,11 +17,36 @@ use crate::surface::data::kind::Domain;
 use crate::surface::faults::CutFault;
 use crate::surface::rails::side::{Border, Side};
 use crate::surface::rails::trim_curve::TrimCurve;
-use crate::surface::trims::cells::{Cells, Face};
-use crate::surface::trims::cutters::{Cutter, Meets, Piece, bounded, pieces, strands, within};
+use crate::surface::trims::cells::{Cells, FaceLoops};
+use crate::surface::trims::cutters::{DividingCurve, Meets, Piece, bounded, dividing_curves, pieces, within};
 use crate::surface::trims::faces::{Edge, bridges, followers, is_plane, loops, without_tails};
 use crate::surface::trims::pcurve::is_pole;
-use crate::surface::trims::trim::{TrimLoop, assembled, natural};
+use crate::surface::trims::trim_loop::{TrimLoop, assembled, natural};
+
+/// How vertices are found and the pieces that leave them are ordered.
+struct Vertices {
+    /// Ends of one piece farther from each other than so many tolerances are two vertices.
+    apart_tolerances: f64,
+    /// Share of the shortest piece at a vertex at which directions out of it are taken.
+    direction_share: f64,
+    /// Directions are taken so many tolerances away from a vertex, or at `clear_share` of the shortest piece where that is less.
+    clear_tolerances: f64,
+    /// Share of the shortest piece.
+    clear_share: f64,
+    /// Directions of pieces that are not apart there are taken no farther away than at this share of the shortest piece.
+    farthest_share: f64,
+    /// Places nearer in (u, v) than this may be one vertex: at a pole, elsewhere.
+    near_uv: (f64, f64),
+}
+
+const VERTICES: Vertices = Vertices {
+    apart_tolerances: 2.0,
+    direction_share: 0.01,
+    clear_tolerances: 8.0,
+    clear_share: 0.25,
+    farthest_share: 0.45,
+    near_uv: (NUDGE, 0.1),
+};
 
 /// Divides a surface by curves on it, together with its own border, and keeps the part with a point.
 ///
@@ -36,7 +61,7 @@ pub fn divide(base: &Surface, cutters: &[Chain], keep: DVec3, origin: Origin, to
     let Some(face) = cells.face(foot)? else {
         return Err(CutFault::KeepOff { surface: base.origin(), at: keep, off: 0.0, on: None, tolerance: tolerance.point }.into());
     };
-    assembled(base, walks(&dividing.pieces, &face), origin)
+    assembled(base, trim_loops(&dividing.pieces, &face), origin)
 }
 
 /// All parts into which curves on a surface divide it, together with its own border; fails as [`divide`] does.
@@ -44,7 +69,7 @@ pub fn split(whole: &Surface, cutters: &[Chain], origin: Origin, tolerance: &Tol
     let base = &plane::unmapped(whole, tolerance)?;
     let dividing = dividing(base, cutters, Meets::Anywhere, tolerance)?;
     let cells = Cells::new(base, &dividing.pieces, &dividing.edges, tolerance)?;
-    let part = |face: &Face| Ok(assembled(base, walks(&dividing.pieces, face), origin)?.cut_from(std::slice::from_ref(whole)));
+    let part = |face: &FaceLoops| Ok(assembled(base, trim_loops(&dividing.pieces, face), origin)?.cut_from(std::slice::from_ref(whole)));
     let faces = cells.faces()?;
     undivided(base, &dividing, faces.len(), tolerance)?;
     faces.iter().map(part).collect()
@@ -79,8 +104,8 @@ pub(crate) struct Dividing {
 
 /// The pieces of the border and of curves that divide a surface, loose ends left out.
 pub(crate) fn dividing(base: &Surface, cutters: &[Chain], meets: Meets, tolerance: &Tolerance) -> Result<Dividing> {
-    let strands = strands(base, cutters, meets, tolerance)?;
-    let (all, along) = pieces(base, &strands, tolerance)?;
+    let curves = dividing_curves(base, cutters, meets, tolerance)?;
+    let (all, along) = pieces(base, &curves, tolerance)?;
     let (edges, places) = graph(base, &all, tolerance);
     let bare: Vec<bool> = all.iter().map(|piece| piece.seam || matches!(piece.border.side, Side::Pole(_))).collect();
     let mut stays = without_tails(&edges, &sites(base, &places, tolerance), &bare);
@@ -92,12 +117,12 @@ pub(crate) fn dividing(base: &Surface, cutters: &[Chain], meets: Meets, toleranc
         bridges(&rows).into_iter().map(|k| kept[k]).filter(|k| !all[*k].rim).for_each(|k| stays[k] = false);
     }
     for (k, cutter) in cutters.iter().enumerate() {
-        let parts = || (0..all.len()).filter(|i| strands[all[*i].strand].cutter == Some(k));
+        let parts = || (0..all.len()).filter(|i| curves[all[*i].curve].cutter == Some(k));
         let outside = parts().next().is_none();
         if parts().any(|i| stays[i]) || outside && along.contains(&k) {
             continue;
         }
-        let mut ends = if outside { Vec::new() } else { open_ends(cutter, &strands, &all, &stays, tolerance) };
+        let mut ends = if outside { Vec::new() } else { open_ends(cutter, &curves, &all, &stays, tolerance) };
         if bounded(base) {
             let loops = natural(base, tolerance)?;
             ends.retain(|p| within(base, &loops, *p).is_some());
@@ -123,9 +148,9 @@ fn foot_of(base: &Surface, cutters: &[Chain], keep: DVec3, tolerance: &Tolerance
 }
 
 /// The ends of a cutter that are on nothing that divides the surface.
-fn open_ends(cutter: &Chain, strands: &[Cutter], all: &[Piece], stays: &[bool], tolerance: &Tolerance) -> Vec<DVec3> {
+fn open_ends(cutter: &Chain, curves: &[DividingCurve], all: &[Piece], stays: &[bool], tolerance: &Tolerance) -> Vec<DVec3> {
     let held = |p: DVec3| {
-        let near = |piece: &Piece| match (&strands[piece.strand].chain, piece.own_chain()) {
+        let near = |piece: &Piece| match (&curves[piece.curve].chain, piece.own_chain()) {
             (_, Some(run)) | (Some(run), None) => run.closest(p).2 <= 2.0 * tolerance.point,
             (None, None) => piece.p.1.distance(p) <= 2.0 * tolerance.point,
         };
@@ -143,7 +168,7 @@ type Places = Vec<(DVec2, DVec3)>;
 fn graph(base: &Surface, all: &[Piece], tolerance: &Tolerance) -> (Vec<Edge>, Places) {
     let (ends, places) = vertices(base, all, tolerance);
     // Curves that touch leave a vertex in one direction: at one distance from it they have parted, at one share of each perhaps not.
-    let length = |piece: &Piece| match (&piece.course, piece.own_chain()) {
+    let length = |piece: &Piece| match (&piece.trim_curve, piece.own_chain()) {
         (TrimCurve::Pcurve(pcurve), Some(chain)) => chain.length() * (pcurve.fraction(1.0) - pcurve.fraction(0.0)).abs(),
         _ => f64::INFINITY,
     };
@@ -154,48 +179,50 @@ fn graph(base: &Surface, all: &[Piece], tolerance: &Tolerance) -> (Vec<Edge>, Pl
     }
     let away: BTreeMap<usize, f64> = fans.iter().map(|(vertex, fan)| (*vertex, apart_at(all, fan, &length, tolerance))).collect();
     let out = |piece: &Piece, ends: &(usize, usize)| {
-        let place = |f: f64| match (&piece.course, piece.own_chain()) {
+        let place = |f: f64| match (&piece.trim_curve, piece.own_chain()) {
             (TrimCurve::Pcurve(pcurve), Some(chain)) => {
                 let f = pcurve.fraction(f);
                 foot::foot(base.evaluator(), chain.point(f), pcurve.guess(f)).0
             }
-            (course, _) => {
-                let places = course.places();
+            (trim_curve, _) => {
+                let places = trim_curve.places();
                 places[0].lerp(places[places.len() - 1], f)
             }
         };
         let share = |vertex: usize| away[&vertex] / length(piece);
         let (first, last) = match length(piece).is_finite() {
             true => (share(ends.0), share(ends.1)),
-            false => (START, START),
+            false => (VERTICES.direction_share, VERTICES.direction_share),
         };
-        // From the place of the vertex: where pieces leave a run that they share, only what they are off it tells them apart.
+        // From the place of the vertex: where pieces leave a run that they share, only what they are off it separates them.
         (place(first) - places[ends.0].0, place(1.0 - last) - places[ends.1].0)
     };
     let edges = all.iter().zip(ends).map(|(piece, ends)| Edge { ends, out: out(piece, &ends) }).collect();
     (edges, places)
 }
 
-/// How far from a vertex the pieces that leave it are apart, in space, so that their directions tell their order: pieces that touch or
+/// How far from a vertex the pieces that leave it are apart, in space, so that their directions give their order: pieces that touch or
 /// cross flatly may run within the tolerance of each other for long.
 fn apart_at(all: &[Piece], fan: &[(usize, bool)], length: &impl Fn(&Piece) -> f64, tolerance: &Tolerance) -> f64 {
     let shortest = fan.iter().map(|(k, _)| length(&all[*k])).fold(f64::INFINITY, f64::min);
-    let first = (START * shortest).max((CLEAR * tolerance.point).min(CLEAR_SHARE * shortest));
+    let first =
+        (VERTICES.direction_share * shortest).max((VERTICES.clear_tolerances * tolerance.point).min(VERTICES.clear_share * shortest));
     let place = |(k, last): &(usize, bool), away: f64| {
         let (piece, share) = (&all[*k], away / length(&all[*k]));
-        match (&piece.course, piece.own_chain()) {
+        match (&piece.trim_curve, piece.own_chain()) {
             (TrimCurve::Pcurve(pcurve), Some(chain)) => Some(chain.point(pcurve.fraction(if *last { 1.0 - share } else { share }))),
             _ => None,
         }
     };
     let apart = |away: f64| {
         let places: Vec<DVec3> = fan.iter().filter_map(|end| place(end, away)).collect();
-        (1..places.len()).all(|k| places[..k].iter().all(|p| p.distance(places[k]) > APART * tolerance.point))
+        (1..places.len()).all(|k| places[..k].iter().all(|p| p.distance(places[k]) > VERTICES.apart_tolerances * tolerance.point))
     };
     if !(first > 0.0 && first.is_finite()) {
         return first;
     }
-    let mut farther = std::iter::successors(Some(first), |away| Some(1.5 * away)).take_while(|away| *away <= FARTHEST * shortest);
+    let mut farther =
+        std::iter::successors(Some(first), |away| Some(1.5 * away)).take_while(|away| *away <= VERTICES.farthest_share * shortest);
     farther.find(|away| apart(*away)).unwrap_or(first)
 }
 
@@ -203,8 +230,8 @@ fn apart_at(all: &[Piece], fan: &[(usize, bool)], length: &impl Fn(&Piece) -> f6
 /// but never the two ends of a piece that are apart.
 fn vertices(base: &Surface, all: &[Piece], tolerance: &Tolerance) -> (Vec<(usize, usize)>, Places) {
     let ends: Places = all.iter().flat_map(|piece| [(piece.uv.0, piece.p.0), (piece.uv.1, piece.p.2)]).collect();
-    let apart: Vec<bool> = all.iter().map(|piece| piece.p.0.distance(piece.p.2) > APART * tolerance.point).collect();
-    let near: Vec<f64> = ends.iter().map(|(uv, _)| if is_pole(base, *uv) { NEAR.0 } else { NEAR.1 }).collect();
+    let apart: Vec<bool> = all.iter().map(|piece| piece.p.0.distance(piece.p.2) > VERTICES.apart_tolerances * tolerance.point).collect();
+    let near: Vec<f64> = ends.iter().map(|(uv, _)| if is_pole(base, *uv) { VERTICES.near_uv.0 } else { VERTICES.near_uv.1 }).collect();
     let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
     for (b, (uv, p)) in job::looking(ends.iter().enumerate()) {
         for (a, (st, q)) in ends[..b].iter().enumerate() {
@@ -233,9 +260,6 @@ fn vertices(base: &Surface, all: &[Piece], tolerance: &Tolerance) -> (Vec<(usize
     (of_pieces, firsts.iter().map(|k| ends[*k]).collect())
 }
 
-/// Ends of one piece farther from each other than so many tolerances are two vertices.
-const APART: f64 = 2.0;
-
 /// Which vertices are one point of the surface, across its seams and at its poles: the first of them for each.
 fn sites(base: &Surface, places: &Places, tolerance: &Tolerance) -> Vec<usize> {
     let (closed_u, closed_v) = base.closed();
@@ -243,40 +267,30 @@ fn sites(base: &Surface, places: &Places, tolerance: &Tolerance) -> Vec<usize> {
     let poles: Vec<bool> = places.iter().map(|(uv, _)| is_pole(base, *uv)).collect();
     let one = |a: usize, b: usize| {
         let ((uv, p), (st, q)) = (places[a], places[b]);
-        let turned = off(uv.x - st.x, closed_u).max(off(uv.y - st.y, closed_v)) <= NEAR.1;
+        let turned = off(uv.x - st.x, closed_u).max(off(uv.y - st.y, closed_v)) <= VERTICES.near_uv.1;
         p.distance(q) <= TOLD_APART * tolerance.point && (turned || poles[a] && poles[b])
     };
     (0..places.len()).map(|k| (0..k).find(|j| one(*j, k)).unwrap_or(k)).collect()
 }
 
-/// Share of the shortest piece at a vertex at which directions out of it are taken.
-const START: f64 = 0.01;
-/// Directions are taken so many tolerances away from a vertex, or at this share of the shortest piece where that is less.
-const CLEAR: f64 = 8.0;
-const CLEAR_SHARE: f64 = 0.25;
-/// Directions of pieces that are not apart there are taken no farther away than at this share of the shortest piece.
-const FARTHEST: f64 = 0.45;
-/// Places nearer in (u, v) than this may be one vertex: at a pole, elsewhere.
-const NEAR: (f64, f64) = (NUDGE, 0.1);
-
-/// The loops of a face as walks, the outer one first.
-pub(crate) fn walks(pieces: &[Piece], face: &Face) -> Vec<TrimLoop> {
-    let mut walks: Vec<TrimLoop> = face.iter().map(|row| walk(pieces, row)).collect();
-    walks.sort_by(|a, b| b.area2().abs().total_cmp(&a.area2().abs()));
-    walks
+/// The loops of a face, the outer one first.
+pub(crate) fn trim_loops(pieces: &[Piece], face: &FaceLoops) -> Vec<TrimLoop> {
+    let mut trim_loops: Vec<TrimLoop> = face.iter().map(|row| trim_loop(pieces, row)).collect();
+    trim_loops.sort_by(|a, b| b.area2().abs().total_cmp(&a.area2().abs()));
+    trim_loops
 }
 
-fn walk(pieces: &[Piece], row: &[((usize, bool), DVec2)]) -> TrimLoop {
-    let mut walk = TrimLoop { borders: Vec::new(), courses: Vec::new(), chains: Vec::new() };
+fn trim_loop(pieces: &[Piece], row: &[((usize, bool), DVec2)]) -> TrimLoop {
+    let mut trim_loop = TrimLoop { borders: Vec::new(), trim_curves: Vec::new(), chains: Vec::new() };
     for ((k, backwards), by) in row {
         let piece = &pieces[*k];
-        let (border, course): (Border, TrimCurve) =
-            if *backwards { (piece.border.turned(), piece.course.turned()) } else { (piece.border.clone(), piece.course.clone()) };
+        let (border, trim_curve): (Border, TrimCurve) =
+            if *backwards { (piece.border.turned(), piece.trim_curve.turned()) } else { (piece.border.clone(), piece.trim_curve.clone()) };
         if let Side::Chain { chain, .. } = &border.side {
-            walk.chains.push(chain.clone());
+            trim_loop.chains.push(chain.clone());
         }
-        walk.borders.push(border);
-        walk.courses.push(course.shifted(*by));
+        trim_loop.borders.push(border);
+        trim_loop.trim_curves.push(trim_curve.shifted(*by));
     }
-    walk
+    trim_loop
 }

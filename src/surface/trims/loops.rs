@@ -20,13 +20,13 @@ use crate::surface::faults::LoopFault;
 use crate::surface::rails::side::Side;
 use crate::surface::rails::trim_curve::TrimCurve;
 use crate::surface::trims::cutters::of_border;
-use crate::surface::trims::trim::TrimLoop;
+use crate::surface::trims::trim_loop::TrimLoop;
 
 /// Meetings nearer to each other than this many tolerances are one.
 const REACH: f64 = 4.0;
 
 /// A loop of a face with its curves in space.
-pub(crate) struct Ring {
+pub(crate) struct LoopRing {
     /// The curve, or the surface, that is named for it.
     pub of: Origin,
     /// Its place in the list of holes; `None` for a loop that the surface had before.
@@ -39,7 +39,7 @@ pub(crate) struct Ring {
     seams: Vec<Chain>,
 }
 
-impl Ring {
+impl LoopRing {
     /// A loop given by curves.
     pub fn of_chains(chains: &[Chain], hole: Option<usize>, otherwise: Origin) -> Self {
         let of = chains.first().map_or(otherwise, Chain::origin);
@@ -47,14 +47,14 @@ impl Ring {
     }
 
     /// A loop that a surface has.
-    pub fn of_walk(base: &Surface, walk: &TrimLoop, outer: bool, tolerance: &Tolerance) -> Result<Self> {
+    pub fn of_trim_loop(base: &Surface, trim_loop: &TrimLoop, outer: bool, tolerance: &Tolerance) -> Result<Self> {
         let (mut chains, mut seams) = (Vec::new(), Vec::new());
-        let sides = walk.borders.len();
-        for (k, (border, course)) in walk.borders.iter().zip(&walk.courses).enumerate() {
-            let opposite = (sides == 4).then(|| walk.borders[(k + 2) % 4].turned());
-            let strand = of_border(base, (border.clone(), course.clone()), opposite, tolerance)?;
-            if let Some(chain) = strand.chain {
-                if strand.seam { seams.push(chain) } else { chains.push(chain) }
+        let sides = trim_loop.borders.len();
+        for (k, (border, trim_curve)) in trim_loop.borders.iter().zip(&trim_loop.trim_curves).enumerate() {
+            let opposite = (sides == 4).then(|| trim_loop.borders[(k + 2) % 4].turned());
+            let curve = of_border(base, border.clone(), trim_curve.clone(), opposite, tolerance)?;
+            if let Some(chain) = curve.chain {
+                if curve.seam { seams.push(chain) } else { chains.push(chain) }
             }
         }
         let of = if outer { base.origin() } else { chains.first().map_or(base.origin(), Chain::origin) };
@@ -71,7 +71,7 @@ pub(crate) type ChainCut = (usize, f64);
 
 /// Where two loops meet.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Touch {
+pub(crate) struct LoopTouch {
     /// Points, those of one place once; ends of common runs too.
     pub places: Vec<DVec3>,
     /// Ends of the first run that both have.
@@ -84,7 +84,7 @@ pub(crate) struct Touch {
     pub cuts: (Vec<ChainCut>, Vec<ChainCut>),
 }
 
-impl Touch {
+impl LoopTouch {
     /// Whether it is more than a contact in one point.
     pub fn is_crossing(&self) -> bool {
         self.run.is_some() || self.places.len() > 1
@@ -109,8 +109,8 @@ struct Fence<'a> {
 }
 
 /// Meetings of loops, by the numbers of two of them in ascending order; loops before `new` are not compared with each other.
-pub(crate) fn touches(rings: &[Ring], new: usize, tolerance: &Tolerance) -> Result<BTreeMap<(usize, usize), Touch>> {
-    let of_ring = |(ring, r): (usize, &'_ Ring)| r.chains.iter().enumerate().map(move |(number, _)| (ring, number)).collect::<Vec<_>>();
+pub(crate) fn touches(rings: &[LoopRing], new: usize, tolerance: &Tolerance) -> Result<BTreeMap<(usize, usize), LoopTouch>> {
+    let of_ring = |(ring, r): (usize, &'_ LoopRing)| r.chains.iter().enumerate().map(move |(number, _)| (ring, number)).collect::<Vec<_>>();
     let mut fences: Vec<Fence> = rings
         .iter()
         .enumerate()
@@ -121,7 +121,7 @@ pub(crate) fn touches(rings: &[Ring], new: usize, tolerance: &Tolerance) -> Resu
         })
         .collect();
     fences.sort_by(|a, b| a.reach.min.x.total_cmp(&b.reach.min.x).then((a.ring, a.number).cmp(&(b.ring, b.number))));
-    let mut found: BTreeMap<(usize, usize), Touch> = BTreeMap::new();
+    let mut found: BTreeMap<(usize, usize), LoopTouch> = BTreeMap::new();
     let mut open: Vec<usize> = Vec::new();
     for k in 0..fences.len() {
         job::poll();
@@ -153,10 +153,10 @@ pub(crate) fn touches(rings: &[Ring], new: usize, tolerance: &Tolerance) -> Resu
 }
 
 /// The fault of two loops that meet in more than a point.
-pub(crate) fn crossing((a, b): (&Ring, &Ring), touch: &Touch, trimming: Origin, tolerance: &Tolerance) -> LoopFault {
+pub(crate) fn crossing((a, b): (&LoopRing, &LoopRing), touch: &LoopTouch, trimming: Origin, tolerance: &Tolerance) -> LoopFault {
     let (old, later) = if b.outer { (b, a) } else { (a, b) };
     let room = REACH * tolerance.point;
-    let whole = |ring: &Ring| touch.shared >= ring.length() - room;
+    let whole = |ring: &LoopRing| touch.shared >= ring.length() - room;
     if let (Some(hole), true, true) = (later.hole, whole(old), whole(later)) {
         let earlier = if old.outer { None } else { old.hole };
         if old.outer || earlier.is_some() {
@@ -170,7 +170,7 @@ pub(crate) fn crossing((a, b): (&Ring, &Ring), touch: &Touch, trimming: Origin, 
 impl TrimLoop {
     /// A place of it and its point in space: the farthest from a point at which it touches another loop.
     pub fn place_off(&self, base: &Surface, touched: Option<DVec3>) -> (DVec2, DVec3) {
-        let places = self.courses.iter().flat_map(TrimCurve::places).map(|uv| (uv, base.point(uv.x, uv.y)));
+        let places = self.trim_curves.iter().flat_map(TrimCurve::places).map(|uv| (uv, base.point(uv.x, uv.y)));
         let far = |p: &(DVec2, DVec3)| touched.map_or(0.0, |t| t.distance_squared(p.1));
         let first = |best: Option<(DVec2, DVec3)>, p: (DVec2, DVec3)| match best {
             Some(q) if far(&p) <= far(&q) => Some(q),
@@ -182,10 +182,10 @@ impl TrimLoop {
     /// The angle by which it turns about a place, by its curves and not by polygons.
     pub fn turning(&self, base: &Surface, p: DVec2) -> f64 {
         let turn = |k: usize| match &self.borders[k].side {
-            Side::Chain { chain, .. } => base.turn_along(&self.courses[k], Some(chain), p),
-            _ => base.turn_along(&self.courses[k], None, p),
+            Side::Chain { chain, .. } => base.turn_along(&self.trim_curves[k], Some(chain), p),
+            _ => base.turn_along(&self.trim_curves[k], None, p),
         };
-        (0..self.courses.len()).map(turn).sum::<f64>()
+        (0..self.trim_curves.len()).map(turn).sum::<f64>()
     }
 
     /// Whether it goes round a place.
@@ -193,9 +193,9 @@ impl TrimLoop {
         self.turning(base, p).abs() > std::f64::consts::PI
     }
 
-    /// A place and the same place whole turns round the surface away, as far as the walk reaches.
+    /// A place and the same place whole turns round the surface away, as far as the loop reaches.
     pub fn copies(&self, base: &Surface, p: DVec2) -> Vec<DVec2> {
-        let (low, high) = reach(&self.courses);
+        let (low, high) = reach(&self.trim_curves);
         let along = |closed: bool, axis: usize| if closed { within(p[axis], (low[axis], high[axis])) } else { vec![p[axis]] };
         let vs = along(base.closed().1, 1);
         along(base.closed().0, 0).into_iter().flat_map(|u| vs.iter().map(move |v| DVec2::new(u, *v))).collect()
@@ -213,15 +213,15 @@ pub(crate) fn nested(
     holes: &[(usize, &TrimLoop)],
     touched: impl Fn(usize, usize) -> Option<DVec3>,
 ) -> Option<(usize, usize, DVec3)> {
-    let reaches: Vec<(DVec2, DVec2)> = holes.iter().map(|(_, walk)| reach(&walk.courses)).collect();
+    let reaches: Vec<(DVec2, DVec2)> = holes.iter().map(|(_, trim_loop)| reach(&trim_loop.trim_curves)).collect();
     let near = |p: DVec2, (low, high): (DVec2, DVec2)| low.cmple(p).all() && p.cmple(high).all();
-    for (inner, walk) in holes {
-        let (first, _) = walk.place_off(base, None);
+    for (inner, trim_loop) in holes {
+        let (first, _) = trim_loop.place_off(base, None);
         for ((around, other), reach) in holes.iter().zip(&reaches) {
             if inner == around || !near(first, *reach) {
                 continue;
             }
-            let (place, at) = walk.place_off(base, touched(*inner, *around));
+            let (place, at) = trim_loop.place_off(base, touched(*inner, *around));
             if other.goes_round(base, place) {
                 return Some((*inner, *around, at));
             }
@@ -230,10 +230,10 @@ pub(crate) fn nested(
     None
 }
 
-impl Ring {
+impl LoopRing {
     /// Whether it crosses a seam of the surface that has this border.
     pub fn crosses_seam(&self, border: &Self, tolerance: &Tolerance) -> Result<bool> {
-        let (mut touch, seams) = (Touch::default(), &border.seams);
+        let (mut touch, seams) = (LoopTouch::default(), &border.seams);
         for seam in seams {
             for chain in &self.chains {
                 for m in meet(seam, chain, tolerance)? {

@@ -1,4 +1,4 @@
-//! Loops on closed surfaces that no polygon in (u, v) tells: over the seam of a whole surface, round a pole, round a tube. They
+//! Loops on closed surfaces that no polygon in (u, v) represents: over the seam of a whole surface, round a pole, round a tube. They
 //! divide the surface, and what they bound alone is the part without its border.
 
 use glam::{DVec2, DVec3};
@@ -13,7 +13,24 @@ use crate::surface::core::surface::Surface;
 use crate::surface::rails::side::Side;
 use crate::surface::rails::trim_curve::TrimCurve;
 use crate::surface::trims::divide::divide;
-use crate::surface::trims::trim::{TrimLoop, natural};
+use crate::surface::trims::trim_loop::{TrimLoop, natural};
+
+/// How the two sides of a loop are found.
+struct SideSearch {
+    /// Where along a curve its two sides are looked at: no place that is special for anything.
+    at_fraction: f64,
+    /// How far beside it, as a share of its length, at first.
+    first_distance_share: f64,
+    /// Halvings of that.
+    max_halvings: usize,
+    /// How far beside its border a surface surely is, in nudges of (u, v).
+    inward_nudges: f64,
+    /// Cells along u and v by which areas are compared.
+    cells_each_way: usize,
+}
+
+const SIDES: SideSearch =
+    SideSearch { at_fraction: 0.4873, first_distance_share: 0.01, max_halvings: 12, inward_nudges: 100.0, cells_each_way: 48 };
 
 /// Which part a loop keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,22 +41,13 @@ pub(crate) enum Keep {
     Outside,
 }
 
-/// Where along a curve its two sides are looked at: no place that is special for anything.
-const MIDDLE: f64 = 0.4873;
-/// How far beside it, as a share of its length, at first.
-const BESIDE: f64 = 0.01;
-/// Halvings of that.
-const TRIES: usize = 12;
-/// How far beside its border a surface surely is, in nudges of (u, v).
-const INWARD: f64 = 100.0;
-/// Cells along u and v by which areas are compared.
-const CELLS: usize = 48;
-
 impl TrimLoop {
     /// Whether it comes back to its first place by a whole turn round the surface.
     pub fn winds(&self, base: &Surface) -> bool {
         let ends = |c: &TrimCurve| -> Option<(DVec2, DVec2)> { Some((*c.places().first()?, *c.places().last()?)) };
-        let (Some(first), Some(last)) = (self.courses.first().and_then(ends), self.courses.last().and_then(ends)) else { return false };
+        let (Some(first), Some(last)) = (self.trim_curves.first().and_then(ends), self.trim_curves.last().and_then(ends)) else {
+            return false;
+        };
         let turns = (last.1 - first.0).round();
         let closed = base.closed();
         closed.0 && turns.x != 0.0 || closed.1 && turns.y != 0.0
@@ -50,7 +58,7 @@ impl TrimLoop {
         let hairs = [DVec2::ZERO, DVec2::splat(NUDGE), DVec2::splat(-NUDGE), DVec2::new(NUDGE, -NUDGE), DVec2::new(-NUDGE, NUDGE)];
         let outline = bounds.polygon();
         let place = |p: DVec2| bounds.copies(base, p).into_iter().any(|at| hairs.iter().any(|hair| inside(&outline, at + *hair)));
-        self.courses.iter().flat_map(TrimCurve::places).all(place)
+        self.trim_curves.iter().flat_map(TrimCurve::places).all(place)
     }
 }
 
@@ -81,11 +89,11 @@ pub(crate) fn noncontractible(
 /// A point of the surface on each side of a loop.
 fn beside(base: &Surface, chains: &[Chain], tolerance: &Tolerance) -> Option<[DVec3; 2]> {
     let chain = chains.first()?;
-    let jet = chain.jet(MIDDLE);
+    let jet = chain.jet(SIDES.at_fraction);
     let at = closest(base, jet.p).uv;
     let aside = base.normal(at.0, at.1).cross(jet.d1).try_normalize()?;
-    let mut step = BESIDE * chain.length();
-    for _ in 0..TRIES {
+    let mut step = SIDES.first_distance_share * chain.length();
+    for _ in 0..SIDES.max_halvings {
         let points = [aside * step, aside * -step].map(|d| closest(base, jet.p + d).point);
         let far = |p: &DVec3| chains.iter().map(|c| c.closest(*p).2).fold(f64::INFINITY, f64::min) >= 0.5 * step;
         if points.iter().all(far) {
@@ -102,17 +110,17 @@ fn beside(base: &Surface, chains: &[Chain], tolerance: &Tolerance) -> Option<[DV
 /// Places just inside the border of a surface, one for each side of it that is neither a seam nor a pole.
 fn border_places(base: &Surface, tolerance: &Tolerance) -> Result<Vec<DVec2>> {
     let mut found = Vec::new();
-    for walk in natural(base, tolerance)? {
-        for (border, course) in walk.borders.iter().zip(&walk.courses) {
-            if matches!(border.side, Side::Pole(_)) || course.is_seam(base.closed()) {
+    for trim_loop in natural(base, tolerance)? {
+        for (border, trim_curve) in trim_loop.borders.iter().zip(&trim_loop.trim_curves) {
+            if matches!(border.side, Side::Pole(_)) || trim_curve.is_seam(base.closed()) {
                 continue;
             }
-            let places = course.places();
+            let places = trim_curve.places();
             // A place of a curve itself: its chords may lie outside.
             let k = places.len() / 2;
             let (a, b) = (places[k - 1], places[(k + 1).min(places.len() - 1)]);
             let on = if places.len() > 2 { places[k] } else { 0.5 * (a + b) };
-            found.push(on + (b - a).normalize_or_zero().perp() * INWARD * NUDGE);
+            found.push(on + (b - a).normalize_or_zero().perp() * SIDES.inward_nudges * NUDGE);
         }
     }
     Ok(found)
@@ -120,8 +128,8 @@ fn border_places(base: &Surface, tolerance: &Tolerance) -> Result<Vec<DVec2>> {
 
 /// About the area of a part of a surface, by the middles of cells that it holds.
 fn area(part: &Surface) -> f64 {
-    let at = |k: usize| (k as f64 + 0.5) / CELLS as f64;
-    let cells = (0..CELLS * CELLS).map(|k| (at(k % CELLS), at(k / CELLS)));
+    let at = |k: usize| (k as f64 + 0.5) / SIDES.cells_each_way as f64;
+    let cells = (0..SIDES.cells_each_way * SIDES.cells_each_way).map(|k| (at(k % SIDES.cells_each_way), at(k / SIDES.cells_each_way)));
     let own = cells.filter(|(u, v)| part.holds(*u, *v)).map(|(u, v)| {
         let jet = part.jet(u, v);
         jet.du.cross(jet.dv).length()

@@ -23,8 +23,8 @@ use crate::surface::rails::side::Side;
 use crate::surface::rails::trim_curve::TrimCurve;
 use crate::surface::trims::cells::Cells;
 use crate::surface::trims::cutters::{Meets, Piece};
-use crate::surface::trims::divide::{dividing, walks};
-use crate::surface::trims::trim::{assembled, shifts};
+use crate::surface::trims::divide::{dividing, trim_loops};
+use crate::surface::trims::trim_loop::{assembled, shifts};
 
 /// Where two curves are compared, as shares of their lengths.
 const SHARES: [f64; 5] = [0.0, 0.23, 0.48, 0.77, 1.0];
@@ -74,7 +74,7 @@ pub struct Doubt {
 ///
 /// Where the surface closes loops may run along its seam twice, over it, round the surface and through poles; curves shorter than the
 /// tolerance are left out. The direction of the loops decides only where nothing else does. Where what decides speaks for both sides the
-/// larger share of it is followed, and told. Fails with E502 or E659 where a loop does not
+/// larger share of it is followed, and reported. Fails with E502 or E659 where a loop does not
 /// close, E612 where the loops bound nothing, E613 when a curve leaves the surface.
 pub fn outlined(
     base: &Surface,
@@ -97,7 +97,7 @@ pub fn outlined(
     let sides = Sides { base: &base, pieces: &dividing.pieces, cells: &cells, borders: &borders, known, tolerance };
     let Some((kept, doubts)) = sides.kept(&inner) else { return Err(sides.nothing(origin).into()) };
     let faces = cells.faces_of(&kept)?;
-    let made: Result<Vec<Surface>> = faces.iter().map(|face| assembled(&base, walks(&dividing.pieces, face), origin)).collect();
+    let made: Result<Vec<Surface>> = faces.iter().map(|face| assembled(&base, trim_loops(&dividing.pieces, face), origin)).collect();
     Ok((made?, doubts))
 }
 
@@ -188,14 +188,14 @@ impl Sides<'_> {
             }
             let decides = (0..sum.len()).find(|k| sum[*k].abs() > self.tolerance.rounding);
             let as_is = decides.is_none_or(|k| sum[k] > 0.0);
-            doubts.extend(self.doubt(&group, decides.unwrap_or(GROUNDS.len() - 1), (&sum, &all)));
+            doubts.extend(self.doubt(&group, decides.unwrap_or(GROUNDS.len() - 1), &sum, &all));
             group.iter().for_each(|cell| kept[*cell] = (side[*cell] == Some(true)) == as_is);
         }
         kept.iter().any(|k| *k).then_some((kept, doubts))
     }
 
     /// What speaks for the side of a group of cells that is not kept, where anything does.
-    fn doubt(&self, group: &[usize], decides: usize, (sum, all): (&Votes, &Votes)) -> Option<Doubt> {
+    fn doubt(&self, group: &[usize], decides: usize, sum: &Votes, all: &Votes) -> Option<Doubt> {
         let share = if all[decides] > 0.0 { 0.5 + 0.5 * sum[decides].abs() / all[decides] } else { 0.5 };
         if group.len() < 2 || share > 1.0 - ROUNDING_SHARE {
             return None;
@@ -245,7 +245,7 @@ impl Sides<'_> {
             for chain in inner {
                 let p = chain.point(MIDDLE);
                 let foot = DVec2::from(nearest.at(p).uv);
-                let on_seam = |piece: &&Piece| piece.seam && near(self.base, piece, (p, foot), ONE * self.tolerance.point);
+                let on_seam = |piece: &&Piece| piece.seam && near(self.base, piece, p, foot, ONE * self.tolerance.point);
                 let beside = (0..self.pieces.len()).filter(|k| on_seam(&&self.pieces[*k])).filter_map(|k| self.cells.beside(k)[0]);
                 let beside: Vec<usize> = beside.collect();
                 let found = if beside.is_empty() { self.cells.at(foot).into_iter().collect() } else { beside };
@@ -281,7 +281,7 @@ impl Sides<'_> {
 
 /// A place of a piece with its direction there.
 fn middle(base: &Surface, piece: &Piece) -> Option<(DVec3, DVec3)> {
-    match (&piece.course, piece.own_chain()) {
+    match (&piece.trim_curve, piece.own_chain()) {
         (TrimCurve::Line(a, b), _) => {
             let (a, b) = (DVec2::from(*a), DVec2::from(*b));
             let at = a.lerp(b, MIDDLE);
@@ -297,8 +297,8 @@ fn middle(base: &Surface, piece: &Piece) -> Option<(DVec3, DVec3)> {
 }
 
 /// Whether a point with its place on the surface lies on a piece.
-fn near(base: &Surface, piece: &Piece, (p, foot): (DVec3, DVec2), room: f64) -> bool {
-    match (piece.own_chain(), &piece.course) {
+fn near(base: &Surface, piece: &Piece, p: DVec3, foot: DVec2, room: f64) -> bool {
+    match (piece.own_chain(), &piece.trim_curve) {
         (Some(chain), _) => chain.closest(p).2 <= room,
         (None, TrimCurve::Line(a, b)) => {
             let (a, along) = (DVec2::from(*a), DVec2::from(*b) - DVec2::from(*a));

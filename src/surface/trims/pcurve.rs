@@ -14,18 +14,23 @@ use crate::surface::data::kind::Domain;
 use crate::surface::rails::side::Side;
 use crate::surface::rails::trim_curve::Pcurve;
 
-/// Steps between two breaks of a curve at the least.
-const LEAST: usize = 8;
-/// Largest share of a turn from one place to the next where a surface closes.
-const TURN: f64 = 0.2;
-/// Halvings of a step before it counts as a leap.
-const MAX_DEPTH: u32 = 12;
-/// How far a foot may be from where the last two places point, as a share of the step: a turn less than that is followed.
-const BEND: f64 = 0.25;
+/// What steers the steps in which a curve is followed in (u, v).
+struct Following {
+    /// Steps between two breaks of a curve at the least.
+    least_steps: usize,
+    /// Largest share of a turn from one place to the next where a surface closes.
+    largest_turn_share: f64,
+    /// Halvings of a step before it counts as a leap.
+    max_halvings: u32,
+    /// How far a foot may be from where the last two places point, as a share of the step: a turn less than that is followed.
+    largest_bend_share: f64,
+}
+
+const FOLLOW: Following = Following { least_steps: 8, largest_turn_share: 0.2, max_halvings: 12, largest_bend_share: 0.25 };
 
 /// Where a curve is too far from the surface.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Off {
+pub(crate) struct OffSurface {
     /// The point of the curve.
     pub at: DVec3,
     /// How far it is, model units.
@@ -37,17 +42,17 @@ impl Pcurve {
     /// than `near`.
     ///
     /// From a pole, where u (or v) says nothing, the way is found from the other end.
-    pub fn follow(surface: &Surface, (chain, from, to): (&Chain, f64, f64), start: DVec2, near: f64) -> Result<Self, Off> {
+    pub fn follow(surface: &Surface, chain: &Chain, (from, to): (f64, f64), start: DVec2, near: f64) -> Result<Self, OffSurface> {
         if is_pole(surface, start) {
             let end = closest(surface, chain.point(to)).uv.into();
             if !is_pole(surface, end) {
-                return Self::along(surface, (chain, to, from), end, near).map(|pcurve| pcurve.turned());
+                return Self::along(surface, chain, (to, from), end, near).map(|pcurve| pcurve.turned());
             }
         }
-        Self::along(surface, (chain, from, to), start, near)
+        Self::along(surface, chain, (from, to), start, near)
     }
 
-    fn along(surface: &Surface, (chain, from, to): (&Chain, f64, f64), start: DVec2, near: f64) -> Result<Self, Off> {
+    fn along(surface: &Surface, chain: &Chain, (from, to): (f64, f64), start: DVec2, near: f64) -> Result<Self, OffSurface> {
         let stops = chain_breaks(chain);
         let (low, high) = (from.min(to), from.max(to));
         let mut cuts: Vec<f64> = stops.into_iter().filter(|f| *f > low && *f < high).collect();
@@ -57,20 +62,20 @@ impl Pcurve {
             cuts.reverse();
         }
         let widest = Cell::new(0.0_f64);
-        let land = |f: f64, guess: DVec2| -> Result<DVec2, Off> {
+        let land = |f: f64, guess: DVec2| -> Result<DVec2, OffSurface> {
             let p = chain.point(f);
             let (uv, distance) = foot(surface.evaluator(), p, guess);
             if distance > near {
-                return Err(Off { at: p, distance });
+                return Err(OffSurface { at: p, distance });
             }
             widest.set(widest.get().max(distance));
             Ok(uv)
         };
         let mut at = vec![(from, land(from, start)?)];
         for w in cuts.windows(2) {
-            for k in 1..=LEAST {
-                let f = if k == LEAST { w[1] } else { w[0] + (w[1] - w[0]) * k as f64 / LEAST as f64 };
-                walk(surface, chain, &mut at, f, &land, MAX_DEPTH)?;
+            for k in 1..=FOLLOW.least_steps {
+                let f = if k == FOLLOW.least_steps { w[1] } else { w[0] + (w[1] - w[0]) * k as f64 / FOLLOW.least_steps as f64 };
+                follow_to(surface, chain, &mut at, f, &land, FOLLOW.max_halvings)?;
             }
         }
         Ok(Self::new(at, widest.get()))
@@ -110,7 +115,7 @@ fn on_pole_side(surface: &Surface, uv: DVec2) -> bool {
     let parts = surface.parts();
     let is_pole = |k: usize| parts.borders.get(k).is_some_and(|border| matches!(border.side, Side::Pole(_)));
     match &parts.trim {
-        Some(trim) => trim.courses.iter().enumerate().any(|(k, course)| is_pole(k) && course.touches(uv, NUDGE)),
+        Some(trim) => trim.trim_curves.iter().enumerate().any(|(k, trim_curve)| is_pole(k) && trim_curve.touches(uv, NUDGE)),
         None if parts.domain == Domain::Square => {
             let off = [uv.y, 1.0 - uv.x, 1.0 - uv.y, uv.x];
             off.iter().enumerate().any(|(k, off)| is_pole(k) && off.abs() <= NUDGE)
@@ -120,14 +125,14 @@ fn on_pole_side(surface: &Surface, uv: DVec2) -> bool {
 }
 
 /// Goes on to a fraction, in smaller steps where the way bends or the foot leaps.
-fn walk(
+fn follow_to(
     surface: &Surface,
     chain: &Chain,
     at: &mut Vec<(f64, DVec2)>,
     to: f64,
-    land: &impl Fn(f64, DVec2) -> Result<DVec2, Off>,
+    land: &impl Fn(f64, DVec2) -> Result<DVec2, OffSurface>,
     left: u32,
-) -> Result<(), Off> {
+) -> Result<(), OffSurface> {
     let (from, here) = at[at.len() - 1];
     // First order: the tangent's foot in (u, v).
     let jet = surface.jet(here.x, here.y);
@@ -144,8 +149,10 @@ fn walk(
             let moved = *uv - here;
             // Beside a pole the other way round leads to the same place.
             let (closed_u, closed_v) = surface.closed();
-            let sure = (!closed_u || moved.x.abs() <= TURN) && (!closed_v || moved.y.abs() <= TURN);
-            sure && (moved - ahead).length() <= BEND * moved.length().max(ahead.length()) || moved.length() <= EPSILON.sqrt()
+            let sure =
+                (!closed_u || moved.x.abs() <= FOLLOW.largest_turn_share) && (!closed_v || moved.y.abs() <= FOLLOW.largest_turn_share);
+            sure && (moved - ahead).length() <= FOLLOW.largest_bend_share * moved.length().max(ahead.length())
+                || moved.length() <= EPSILON.sqrt()
         }
         Err(_) => false,
     };
@@ -154,6 +161,6 @@ fn walk(
         return Ok(());
     }
     let middle = 0.5 * (from + to);
-    walk(surface, chain, at, middle, land, left - 1)?;
-    walk(surface, chain, at, to, land, left - 1)
+    follow_to(surface, chain, at, middle, land, left - 1)?;
+    follow_to(surface, chain, at, to, land, left - 1)
 }

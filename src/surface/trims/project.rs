@@ -1,4 +1,4 @@
-//! Curves carried to a surface: its points under a curve in (u, v), the feet of a curve in space, or where a curve meets
+//! Curves projected to a surface: its points under a curve in (u, v), the feet of a curve in space, or where a curve meets
 //! the surface along a direction. Curves in (u, v) of planes and nets are exact where their degree allows (`compose`); the
 //! others have no exact form in general: cubics within a quarter of the tolerance.
 
@@ -22,14 +22,33 @@ use crate::surface::data::kind::Domain;
 use crate::surface::faults::BorderFault;
 use crate::surface::trims::compose;
 
-/// Share of the tolerance that a cubic may be off.
-const SHARE: f64 = 0.25;
-/// Places inside a cubic at which it is compared.
-const PROBES: [f64; 5] = [0.13, 0.3, 0.5, 0.7, 0.87];
-/// Cubics at most.
-const MOST_PIECES: usize = 1 << 14;
-/// Newton steps to a point of the surface.
-const STEPS: usize = 40;
+/// What steers the projection of a curve and its cubics.
+struct Projecting {
+    /// Share of the tolerance that a cubic may be off.
+    cubic_share: f64,
+    /// Places inside a cubic at which it is compared.
+    probes: [f64; 5],
+    /// Cubics at most.
+    max_cubics: usize,
+    /// Newton steps to a point of the surface.
+    max_newton_steps: usize,
+    /// Steps between two stops when nothing is known of the surface.
+    steps_between_stops: usize,
+    /// Longest Newton step in (u, v).
+    largest_newton_step: f64,
+    /// Starts along each direction when no place is known.
+    starts_each_way: usize,
+}
+
+const PROJECT: Projecting = Projecting {
+    cubic_share: 0.25,
+    probes: [0.13, 0.3, 0.5, 0.7, 0.87],
+    max_cubics: 1 << 14,
+    max_newton_steps: 40,
+    steps_between_stops: 32,
+    largest_newton_step: 0.25,
+    starts_each_way: 8,
+};
 
 /// How a curve gets to the surface.
 #[derive(Clone, Copy, Debug)]
@@ -42,9 +61,9 @@ pub enum Way {
     Along(DVec3),
 }
 
-/// A place on the surface with the carried curve's point and derivative.
+/// A place on the surface with the projected curve's point and derivative.
 #[derive(Clone, Copy)]
-pub(crate) struct Spot {
+pub(crate) struct Landing {
     /// Where on the surface.
     pub uv: DVec2,
     /// The point.
@@ -53,14 +72,14 @@ pub(crate) struct Spot {
     pub d1: DVec3,
 }
 
-/// Cubics through places that can be asked for between stops: nowhere, among [`PROBES`], farther off than `allowed`.
+/// Cubics through places that can be asked for between stops: nowhere, among [`PROJECT.probes`], farther off than `allowed`.
 ///
 /// `land` gives the place at a parameter, near a guess when there is one; with `true` as part of what ends there. `lost`
 /// is the fault when halving leads nowhere.
 pub(crate) fn cubics(
     stops: &[f64],
     allowed: f64,
-    land: impl Fn(f64, Option<DVec2>, bool) -> Result<Spot>,
+    land: impl Fn(f64, Option<DVec2>, bool) -> Result<Landing>,
     lost: impl Fn(DVec3) -> Fault,
 ) -> Result<Vec<Nurbs>> {
     let mut pieces: Vec<Nurbs> = Vec::new();
@@ -74,7 +93,7 @@ pub(crate) fn cubics(
             let poles = [from.p, from.p + from.d1 * (h / 3.0), to.p - to.d1 * (h / 3.0), to.p];
             let cubic = Nurbs::bezier(a, b, poles.iter().map(|p| p.extend(1.0)).collect());
             let mut good = true;
-            for probe in PROBES {
+            for probe in PROJECT.probes {
                 let f = a + h * probe;
                 let spot = land(f, Some(from.uv.lerp(to.uv, probe)), false)?;
                 good &= spot.p.distance(cubic.jet(f).p) <= allowed;
@@ -84,7 +103,7 @@ pub(crate) fn cubics(
                 pieces.push(cubic);
                 continue;
             }
-            if pieces.len() + open.len() > MOST_PIECES || h < NUDGE * NUDGE * (w[1] - w[0]) {
+            if pieces.len() + open.len() > PROJECT.max_cubics || h < NUDGE * NUDGE * (w[1] - w[0]) {
                 return Err(lost(from.p));
             }
             let middle = 0.5 * (a + b);
@@ -97,7 +116,7 @@ pub(crate) fn cubics(
     Ok(pieces)
 }
 
-struct Carrier<'a> {
+struct Projector<'a> {
     surface: &'a Surface,
     near: Nearest,
     chain: &'a Chain,
@@ -108,8 +127,8 @@ struct Carrier<'a> {
 ///
 /// Fails with E613 where the curve leaves the surface (its parameters, or the direction misses it), E413 where the result
 /// has a cusp.
-pub fn carried(surface: &Surface, chain: &Chain, way: Way, origin: Origin, tolerance: &Tolerance) -> Result<Curve> {
-    let carrier = Carrier { surface, near: Nearest::new(surface), chain, way };
+pub fn project(surface: &Surface, chain: &Chain, way: Way, origin: Origin, tolerance: &Tolerance) -> Result<Curve> {
+    let carrier = Projector { surface, near: Nearest::new(surface), chain, way };
     let off = |at: DVec3, distance: f64| BorderFault::LoopOutsideSurface {
         of: chain.origin(),
         surface: surface.origin(),
@@ -127,9 +146,9 @@ pub fn carried(surface: &Surface, chain: &Chain, way: Way, origin: Origin, toler
     if let (Way::Parameters, Some(curve)) = (way, compose::exact(surface, chain, origin)) {
         return long_enough(curve, tolerance);
     }
-    let fitted = |stops: &[f64]| cubics(stops, SHARE * tolerance.point, land, lost);
+    let fitted = |stops: &[f64]| cubics(stops, PROJECT.cubic_share * tolerance.point, land, lost);
     // Long steps may land on another sheet of the surface, short ones follow their own.
-    let pieces = fitted(&stops).or_else(|_| fitted(&walked(&stops)))?;
+    let pieces = fitted(&stops).or_else(|_| fitted(&sampled(&stops)))?;
     let curve = Curve::new(Shape::Nurbs(Arc::new(Nurbs::joined(&pieces))), Kind::Project, origin);
     long_enough(curve, tolerance)
 }
@@ -142,28 +161,27 @@ fn long_enough(curve: Curve, tolerance: &Tolerance) -> Result<Curve> {
     Ok(curve)
 }
 
-/// Steps in which a stretch between stops is walked when nothing is known of the surface.
-const WALK: usize = 32;
-
 /// Stops with as many between each two.
-fn walked(stops: &[f64]) -> Vec<f64> {
-    let between = |w: &[f64]| -> Vec<f64> { (0..WALK).map(|k| w[0] + (w[1] - w[0]) * k as f64 / WALK as f64).collect() };
+fn sampled(stops: &[f64]) -> Vec<f64> {
+    let between = |w: &[f64]| -> Vec<f64> {
+        (0..PROJECT.steps_between_stops).map(|k| w[0] + (w[1] - w[0]) * k as f64 / PROJECT.steps_between_stops as f64).collect()
+    };
     stops.windows(2).flat_map(between).chain(stops.last().copied()).collect()
 }
 
-impl Carrier<'_> {
-    /// The carried point at a fraction of the chain, near a place when one is known; `before`: derivatives of the piece
+impl Projector<'_> {
+    /// The projected point at a fraction of the chain, near a place when one is known; `before`: derivatives of the piece
     /// that ends there. `None` where there is none. Over a seam (u, v) go on, so that what is between two places is near both.
-    fn at(&self, f: f64, near: Option<DVec2>, before: bool) -> Option<Spot> {
+    fn at(&self, f: f64, near: Option<DVec2>, before: bool) -> Option<Landing> {
         let found = self.landed(f, near, before)?;
         let Some(near) = near else { return Some(found) };
         let turns = |closed: bool, there: f64, here: f64| if closed { (there - here).round() } else { 0.0 };
         let closed = self.surface.closed();
         let uv = found.uv + DVec2::new(turns(closed.0, near.x, found.uv.x), turns(closed.1, near.y, found.uv.y));
-        Some(Spot { uv, ..found })
+        Some(Landing { uv, ..found })
     }
 
-    fn landed(&self, f: f64, near: Option<DVec2>, before: bool) -> Option<Spot> {
+    fn landed(&self, f: f64, near: Option<DVec2>, before: bool) -> Option<Landing> {
         let jet = if before { self.chain.jet_before(f) } else { self.chain.jet(f) };
         match self.way {
             Way::Parameters => {
@@ -175,7 +193,7 @@ impl Carrier<'_> {
                     return None;
                 }
                 let s = self.surface.jet(uv.x, uv.y);
-                Some(Spot { uv, p: s.p, d1: s.du * jet.d1.x + s.dv * jet.d1.y })
+                Some(Landing { uv, p: s.p, d1: s.du * jet.d1.x + s.dv * jet.d1.y })
             }
             Way::Nearest => {
                 let uv = self.foot(jet.p, near);
@@ -185,13 +203,13 @@ impl Carrier<'_> {
                 let (x, y) = (s.du.dot(jet.d1), s.dv.dot(jet.d1));
                 let det = a * c - b * b;
                 let d1 = s.du * ((c * x - b * y) / det) + s.dv * ((a * y - b * x) / det);
-                d1.is_finite().then_some(Spot { uv, p: s.p, d1 })
+                d1.is_finite().then_some(Landing { uv, p: s.p, d1 })
             }
             Way::Along(way) => {
                 let (uv, s) = self.hit(jet.p, way, near)?;
                 let solved = DMat3::from_cols(s.du, s.dv, -way).inverse() * jet.d1;
                 let d1 = s.du * solved.x + s.dv * solved.y;
-                d1.is_finite().then_some(Spot { uv, p: s.p, d1 })
+                d1.is_finite().then_some(Landing { uv, p: s.p, d1 })
             }
         }
     }
@@ -209,7 +227,7 @@ impl Carrier<'_> {
     fn hit(&self, p: DVec3, way: DVec3, near: Option<DVec2>) -> Option<(DVec2, Jet2)> {
         let newton = |start: DVec2| -> Option<(DVec2, Jet2)> {
             let mut uv = start;
-            for _ in 0..STEPS {
+            for _ in 0..PROJECT.max_newton_steps {
                 let s = self.surface.jet(uv.x, uv.y);
                 let off = (p - s.p).reject_from_normalized(way);
                 let solved = DMat3::from_cols(s.du, s.dv, way).inverse() * (p - s.p);
@@ -217,7 +235,7 @@ impl Carrier<'_> {
                 if !step.is_finite() {
                     return None;
                 }
-                let next = self.surface.hold(uv + step.clamp_length_max(LEAP));
+                let next = self.surface.hold(uv + step.clamp_length_max(PROJECT.largest_newton_step));
                 let still = (next - uv).length() <= EPSILON;
                 uv = next;
                 if still {
@@ -232,14 +250,12 @@ impl Carrier<'_> {
         }
         let foot = self.near.at(p);
         let mut starts = vec![DVec2::new(foot.uv.0, foot.uv.1)];
-        let at = |k: usize| (k as f64 + 0.5) / GRID as f64;
-        starts.extend((0..GRID * GRID).map(|k| DVec2::new(at(k % GRID), at(k / GRID))));
+        let at = |k: usize| (k as f64 + 0.5) / PROJECT.starts_each_way as f64;
+        starts.extend(
+            (0..PROJECT.starts_each_way * PROJECT.starts_each_way)
+                .map(|k| DVec2::new(at(k % PROJECT.starts_each_way), at(k / PROJECT.starts_each_way))),
+        );
         let found = starts.into_iter().filter_map(newton);
         found.min_by(|a, b| a.1.p.distance(p).total_cmp(&b.1.p.distance(p)))
     }
 }
-
-/// Longest Newton step in (u, v).
-const LEAP: f64 = 0.25;
-/// Starts along each direction when no place is known.
-const GRID: usize = 8;

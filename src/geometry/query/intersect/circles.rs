@@ -1,4 +1,4 @@
-//! Arcs of one circle: where they run over each other is told by their angles, without subdivision.
+//! Arcs of one circle: where they run over each other follows from their angles, without subdivision.
 
 use std::f64::consts::{PI, TAU};
 
@@ -20,7 +20,7 @@ pub(crate) fn one_circle<'a>(a: &View<'a>, b: &View<'a>, point: f64) -> Option<(
     (tilt <= 0.125 * point / std::f64::consts::SQRT_2).then_some((x, y))
 }
 
-/// The stretches that two parts (less than half a turn each) have in common, in their own angles; ends count.
+/// The overlaps of two parts (less than half a turn each), in their own angles; ends count.
 pub(crate) fn common(x: &EllipticArc, m: &Node, y: &EllipticArc, n: &Node) -> Option<((f64, f64), (f64, f64))> {
     Some((over(x, m, n)?, over(y, n, m)?))
 }

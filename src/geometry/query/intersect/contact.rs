@@ -1,5 +1,5 @@
-//! Curves that run along each other within the tolerance: shared stretches, tangential contacts and pairs of crossings
-//! close together are told apart here.
+//! Curves that run along each other within the tolerance: overlaps, tangential contacts and pairs of crossings
+//! close together are separated here.
 
 use glam::DVec3;
 
@@ -10,7 +10,7 @@ use crate::geometry::curves::pieces::View;
 use crate::geometry::query::intersect::newton::{Near, approach, foot};
 use crate::geometry::query::intersect::search::{END_REACH, Found, Rect, Search};
 
-/// A shared stretch in own parameters of two sections; `b` descends when the second curve runs the other way.
+/// An overlap in own parameters of two sections; `b` descends when the second curve runs the other way.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shared {
     pub(crate) sections: (usize, usize),
@@ -18,7 +18,7 @@ pub(crate) struct Shared {
     pub(crate) b: (f64, f64),
 }
 
-/// Stretches shorter than this many tolerances are points.
+/// Overlaps shorter than this many tolerances are points.
 const SHORTEST: f64 = 4.0;
 /// Samples of a run, at least and at most.
 const SAMPLES: (usize, usize) = (33, 1025);
@@ -242,7 +242,7 @@ impl Contact<'_> {
         out
     }
 
-    /// Stretches between knots or ends over which the curves are the same but for rounding.
+    /// Overlaps between knots or ends over which the curves are the same but for rounding.
     fn exact_stretches(&self, extent: &Extent) -> Vec<(Sample, Sample)> {
         let mut marks = vec![extent.low, extent.high];
         marks.extend(self.a.curve.knots());
@@ -262,20 +262,20 @@ impl Contact<'_> {
                 self.sample(t, self.guess(t, extent.along)).gap.length() <= EXACT * self.tolerance.rounding
             })
         };
-        let mut stretches: Vec<(f64, f64)> = Vec::new();
+        let mut overlaps: Vec<(f64, f64)> = Vec::new();
         for pair in marks.windows(2) {
             if self.a.point(pair[0]).distance(self.a.point(pair[1])) > SHORTEST * self.tolerance.point && same(pair[0], pair[1]) {
-                match stretches.last_mut() {
+                match overlaps.last_mut() {
                     Some(last) if last.1 == pair[0] => last.1 = pair[1],
-                    _ => stretches.push((pair[0], pair[1])),
+                    _ => overlaps.push((pair[0], pair[1])),
                 }
             }
         }
         let at = |t: f64| self.sample(t, self.guess(t, extent.along));
-        stretches.into_iter().map(|(low, high)| (at(low), at(high))).collect()
+        overlaps.into_iter().map(|(low, high)| (at(low), at(high))).collect()
     }
 
-    /// Points among the samples between two parameters, away from shared stretches at open sides.
+    /// Points among the samples between two parameters, away from overlaps at open sides.
     fn between(&mut self, samples: &[Sample], (low, high): (f64, f64), ended: (bool, bool)) {
         let inner: Vec<Sample> = samples.iter().copied().filter(|s| low < s.ta && s.ta < high).collect();
         if inner.len() >= 3 {

@@ -1,4 +1,4 @@
-//! From everything found to the list of hits: each meeting once, stretches joined, ordered along the first curve.
+//! From everything found to the list of hits: each meeting once, overlaps joined, ordered along the first curve.
 
 use crate::base::tolerance::Tolerance;
 use crate::geometry::curves::curve::Curve;
@@ -24,7 +24,7 @@ pub(crate) fn hits(search: &Search, shared: &[Shared], tolerance: &Tolerance) ->
     if shared.is_empty() && search.found.is_empty() {
         return Vec::new();
     }
-    let stretches = join(search, shared, tolerance);
+    let overlaps = join(search, shared, tolerance);
     let (a, b) = (search.a, search.b);
     let (seam_a, seam_b) = (Seam::of(a.curve, tolerance), Seam::of(b.curve, tolerance));
     let mut points: Vec<Point> = search
@@ -37,19 +37,19 @@ pub(crate) fn hits(search: &Search, shared: &[Shared], tolerance: &Tolerance) ->
             let (va, vb) = (a.view(found.sections.0), b.view(found.sections.1));
             let ends = u8::from(va.at_end(found.near.ta)) + u8::from(vb.at_end(found.near.tb));
             let mut found = *found;
-            // An end neither crosses nor touches by itself: its direction tells.
+            // An end neither crosses nor touches by itself: its direction decides.
             if ends > 0 {
                 let (da, db) = (va.jet(found.near.ta).d1, vb.jet(found.near.tb).d1);
                 found.tangent = !tolerance.is_kink(da, db) || !tolerance.is_kink(da, -db);
             }
             Point { ta, tb, found, ends }
         })
-        .filter(|p| !stretches.iter().any(|s| s.holds(a.curve, b.curve, p, tolerance)))
+        .filter(|p| !overlaps.iter().any(|s| s.holds(a.curve, b.curve, p, tolerance)))
         .collect();
     points.sort_by(|x, y| x.ta.total_cmp(&y.ta).then(x.tb.total_cmp(&y.tb)));
     let points = once(points, a.curve, b.curve, tolerance);
-    let mut all: Vec<Hit> = points.iter().map(Point::hit).chain(stretches.iter().map(|s| Hit::Overlap { a: s.a, b: s.b })).collect();
-    if !stretches.is_empty() {
+    let mut all: Vec<Hit> = points.iter().map(Point::hit).chain(overlaps.iter().map(|s| Hit::Overlap { a: s.a, b: s.b })).collect();
+    if !overlaps.is_empty() {
         all.sort_by(|x, y| x.start().total_cmp(&y.start()));
     }
     all
@@ -126,14 +126,14 @@ fn once(points: Vec<Point>, a: &Curve, b: &Curve, tolerance: &Tolerance) -> Vec<
     kept
 }
 
-/// A shared stretch in the whole curves' parameters.
+/// An overlap in the whole curves' parameters.
 #[derive(Clone, Copy)]
-struct Stretch {
+struct Overlap {
     a: (f64, f64),
     b: (f64, f64),
 }
 
-impl Stretch {
+impl Overlap {
     /// Whether a meeting lies on it, ends included.
     fn holds(&self, a: &Curve, b: &Curve, p: &Point, tolerance: &Tolerance) -> bool {
         let reach = tolerance.point;
@@ -145,18 +145,18 @@ impl Stretch {
     }
 }
 
-/// Stretches that follow each other on both curves become one.
-fn join(search: &Search, shared: &[Shared], tolerance: &Tolerance) -> Vec<Stretch> {
+/// Overlaps that follow each other on both curves become one.
+fn join(search: &Search, shared: &[Shared], tolerance: &Tolerance) -> Vec<Overlap> {
     let common = |side: Side, section: usize, t: (f64, f64)| {
         let s = side.pieces.sections[section];
         (s.to_common(t.0), s.to_common(t.1))
     };
-    let mut all: Vec<Stretch> =
-        shared.iter().map(|s| Stretch { a: common(search.a, s.sections.0, s.a), b: common(search.b, s.sections.1, s.b) }).collect();
+    let mut all: Vec<Overlap> =
+        shared.iter().map(|s| Overlap { a: common(search.a, s.sections.0, s.a), b: common(search.b, s.sections.1, s.b) }).collect();
     all.sort_by(|x, y| x.a.0.total_cmp(&y.a.0).then(x.b.0.total_cmp(&y.b.0)));
-    let mut out: Vec<Stretch> = Vec::new();
+    let mut out: Vec<Overlap> = Vec::new();
     for next in all {
-        let follows = |last: &Stretch| {
+        let follows = |last: &Overlap| {
             let same_way = (last.b.1 >= last.b.0) == (next.b.1 >= next.b.0);
             let meet =
                 |curve: &Curve, t: f64, u: f64| t == u || same_place(curve, t, u, tolerance.point) && (t - u).abs() < 0.5 * width(curve);

@@ -83,7 +83,7 @@ impl<'a> Search<'a> {
 
     /// All pairs of pieces of two curves.
     pub(crate) fn run(&mut self) {
-        self.walk((0, 0, self.a.pieces.pieces.len()), (0, 0, self.b.pieces.pieces.len()));
+        self.descend((0, 0, self.a.pieces.pieces.len()), (0, 0, self.b.pieces.pieces.len()));
     }
 
     /// Pairs of pieces of one curve between which it turns far enough to come back.
@@ -92,7 +92,7 @@ impl<'a> Search<'a> {
     pub(crate) fn run_self(&mut self) {
         let turned = self.turning();
         for i in 0..self.a.pieces.pieces.len() {
-            self.walk_later(i, &turned, (0, 0, self.a.pieces.pieces.len()));
+            self.descend_later(i, &turned, (0, 0, self.a.pieces.pieces.len()));
         }
     }
 
@@ -118,7 +118,7 @@ impl<'a> Search<'a> {
         turned
     }
 
-    fn walk_later(&mut self, i: usize, turned: &[f64], y: (usize, usize, usize)) {
+    fn descend_later(&mut self, i: usize, turned: &[f64], y: (usize, usize, usize)) {
         let pieces = self.a.pieces;
         let enough = turned[y.2] - turned[i] >= std::f64::consts::PI * (1.0 - NEWTON_STEP);
         if y.2 <= i + 1 || !enough || !pieces.pieces[i].node.bounds().touches(pieces.bounds(y.0), self.point) {
@@ -128,13 +128,13 @@ impl<'a> Search<'a> {
             self.pair(i, y.1);
         } else {
             let (left, right, middle) = children(y.0, y.1, y.2);
-            self.walk_later(i, turned, (left, y.1, middle));
-            self.walk_later(i, turned, (right, middle, y.2));
+            self.descend_later(i, turned, (left, y.1, middle));
+            self.descend_later(i, turned, (right, middle, y.2));
         }
     }
 
     /// Pairs below two nodes of the trees: node, first piece, one past the last.
-    fn walk(&mut self, x: (usize, usize, usize), y: (usize, usize, usize)) {
+    fn descend(&mut self, x: (usize, usize, usize), y: (usize, usize, usize)) {
         let (pieces_a, pieces_b) = (self.a.pieces, self.b.pieces);
         if !pieces_a.bounds(x.0).touches(pieces_b.bounds(y.0), self.point) {
             return;
@@ -144,12 +144,12 @@ impl<'a> Search<'a> {
             self.pair(x.1, y.1);
         } else if many_x >= many_y {
             let (left, right, middle) = children(x.0, x.1, x.2);
-            self.walk((left, x.1, middle), y);
-            self.walk((right, middle, x.2), y);
+            self.descend((left, x.1, middle), y);
+            self.descend((right, middle, x.2), y);
         } else {
             let (left, right, middle) = children(y.0, y.1, y.2);
-            self.walk(x, (left, y.1, middle));
-            self.walk(x, (right, middle, y.2));
+            self.descend(x, (left, y.1, middle));
+            self.descend(x, (right, middle, y.2));
         }
     }
 
@@ -212,7 +212,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Whether both parts are about equally long, so that one tells where on the other they run together.
+    /// Whether both parts are about equally long, so that one gives the place on the other where they run together.
     fn alike(&self, x: &Node, y: &Node) -> bool {
         let (p, q) = (x.p.0.distance_squared(x.p.1), y.p.0.distance_squared(y.p.1));
         let longer = p.max(q);

@@ -2,7 +2,7 @@
 
 use crate::base::fault::ValueFault;
 use crate::builtins;
-use crate::geometry::construct::fit::{Fit, fit};
+use crate::geometry::construct::fit_curve::{Fit, fit};
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
 use crate::lang::eval::std::curves::{places, unit, whole};
@@ -90,7 +90,7 @@ fn fitted(cx: &mut Cx, data: Data, said: Said) -> Result<Value, Halt> {
             let net = rows(net);
             cx.seen(net.iter().flatten().copied());
             let tolerance = cx.tolerance()?;
-            let (surface, notes) = surface::points::fit::fit(&net, within, cx.origin(), &tolerance)?;
+            let (surface, notes) = surface::points::fit_net::fit(&net, within, cx.origin(), &tolerance)?;
             Ok(Value::Surface(finished(cx, surface, &notes)?))
         }
     }

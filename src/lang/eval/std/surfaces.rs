@@ -21,7 +21,7 @@ use crate::surface::core::plane;
 use crate::surface::faults::SurfaceFault;
 use crate::surface::intersect::self_intersection::crossing;
 use crate::surface::swept::{extrude, revolve};
-use crate::surface::{Domain, Surface, Way, carried, ruled as surface_between};
+use crate::surface::{Domain, Surface, Way, project, ruled as surface_between};
 
 /// Checks that (u, v) lies in the surface's domain; each with the name of its argument.
 pub(crate) fn checked_uv(surface: &Surface, u: (f64, &'static str), v: (f64, &'static str)) -> Result<(f64, f64), Halt> {
@@ -152,7 +152,7 @@ builtins! {
             Some(along) => Way::Along(unit(along.0, "along")?),
             None => Way::Nearest,
         };
-        Ok(Chain::of_curve(&carried(&onto, &curve, way, cx.origin(), &tolerance)?))
+        Ok(Chain::of_curve(&project(&onto, &curve, way, cx.origin(), &tolerance)?))
     };
 
     /// The part of a surface inside a loop of curves, outside others, or cut off.
@@ -195,7 +195,7 @@ builtins! {
         let mut holes = network::rings(&holes.unwrap_or_default(), &tolerance);
         if uv {
             for chain in outer.iter_mut().chain(holes.iter_mut().flatten()) {
-                *chain = Chain::of_curve(&carried(&s, chain, Way::Parameters, chain.origin(), &tolerance)?);
+                *chain = Chain::of_curve(&project(&s, chain, Way::Parameters, chain.origin(), &tolerance)?);
             }
         }
         let (by, keep) = match (by, keep) {

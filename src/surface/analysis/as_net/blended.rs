@@ -11,7 +11,7 @@ use glam::{DVec3, DVec4};
 
 use crate::base::tolerance::EPSILON;
 use crate::geometry::Jet;
-use crate::surface::analysis::as_net::family::{Course, Family, Fitted};
+use crate::surface::analysis::as_net::family::{Family, Fitted, Target};
 use crate::surface::analysis::as_net::splines::{Breaks, Hermite};
 use crate::surface::analysis::as_net::{DEGREES, NetForm, Off};
 use crate::surface::data::breaks::tidy;
@@ -20,14 +20,14 @@ use crate::surface::rails::line::Line;
 use crate::surface::rails::rail::Rail;
 use crate::surface::shapes::blend::Blend;
 use crate::surface::shapes::nurbs::NurbsSurface;
-use crate::surface::shapes::weights::{Axis, Rule};
+use crate::surface::shapes::weights::{BlendAxis, Rule};
 
 /// Parts of a cell over which blending functions are bounded.
 const PARTS: usize = 16;
 
-impl Course for &Rail {
-    fn jet(&self, x: f64, lean: OneSided) -> Jet {
-        Rail::jet(self, x, lean)
+impl Target for &Rail {
+    fn jet(&self, x: f64, side: OneSided) -> Jet {
+        Rail::jet(self, x, side)
     }
 
     fn line(&self, x0: f64, x1: f64) -> Line {
@@ -63,8 +63,8 @@ fn made(blend: &Blend, within: f64) -> Result<NetForm, (f64, f64)> {
     let (across_u, across_v) = (if alone { 0.0 } else { reach(u) }, reach(v));
     let families = if alone { 1.0 } else { 2.0 };
     let one = |rails: &[Rail], fixed: [Breaks; 2], across: f64| {
-        let courses = rails.iter().map(|rail| Box::new(rail) as Box<dyn Course>).collect();
-        Family { courses, allowed: within / (families * across) }.fitted(fixed)
+        let targets = rails.iter().map(|rail| Box::new(rail) as Box<dyn Target>).collect();
+        Family { targets, allowed: within / (families * across) }.fitted(fixed)
     };
     let along_u =
         one(blend.along_u(), DEGREES.map(|p| if alone { Breaks::none(p) } else { lines(u, p) }), across_v).map_err(|x| (x, 0.0))?;
@@ -97,7 +97,7 @@ fn made(blend: &Blend, within: f64) -> Result<NetForm, (f64, f64)> {
 }
 
 /// Curves along u alone, blended across; straight from one to the next where the rule is.
-fn skinned(along_u: &Fitted, v: &Axis) -> NurbsSurface {
+fn skinned(along_u: &Fitted, v: &BlendAxis) -> NurbsSurface {
     let g = poles(along_u);
     let width = g[0].len();
     let (degree, knots, shares) = if v.rule == Rule::Linear {
@@ -120,12 +120,12 @@ fn poles(fitted: &Fitted) -> Vec<Vec<DVec3>> {
 }
 
 /// Whether the blending functions of a direction are piecewise cubic.
-fn is_cubic(axis: &Axis) -> bool {
+fn is_cubic(axis: &BlendAxis) -> bool {
     axis.is_piecewise() || axis.nodes.len() <= DEGREES[0] + 1
 }
 
 /// Lines at which the blending functions of a direction change, with how many derivatives go on.
-fn lines(axis: &Axis, degree: usize) -> Breaks {
+fn lines(axis: &BlendAxis, degree: usize) -> Breaks {
     let mut breaks = Breaks::none(degree);
     let smooth = match axis.rule {
         Rule::Spline | Rule::Periodic => 2,
@@ -138,7 +138,7 @@ fn lines(axis: &Axis, degree: usize) -> Breaks {
 }
 
 /// Bound of the largest sum of the sizes of all blending functions: of their Bézier points over parts of cells.
-fn reach(axis: &Axis) -> f64 {
+fn reach(axis: &BlendAxis) -> f64 {
     if axis.slopes().is_empty() {
         return axis.lebesgue();
     }
@@ -159,7 +159,7 @@ fn reach(axis: &Axis) -> f64 {
 }
 
 /// Control values of the blending function of each node over breaks that hold the lines of the axis.
-fn cardinals(axis: &Axis, breaks: &Breaks) -> Vec<Vec<f64>> {
+fn cardinals(axis: &BlendAxis, breaks: &Breaks) -> Vec<Vec<f64>> {
     let n = axis.nodes.len();
     let mut all = vec![Hermite { value: Vec::new(), slope: Vec::new(), bend: Vec::new() }; n];
     for x in &breaks.at {
@@ -174,9 +174,9 @@ fn cardinals(axis: &Axis, breaks: &Breaks) -> Vec<Vec<f64>> {
 }
 
 /// Value and derivatives of every node's blending function, slopes across the nodes counted to the nodes that they are sums of.
-fn whole(axis: &Axis, x: f64, lean: OneSided) -> Vec<[f64; 3]> {
+fn whole(axis: &BlendAxis, x: f64, side: OneSided) -> Vec<[f64; 3]> {
     let mut sums = vec![[0.0; 3]; axis.nodes.len()];
-    for (term, w) in axis.weights(x, lean).iter() {
+    for (term, w) in axis.weights(x, side).iter() {
         match term.checked_sub(sums.len()) {
             None => (0..3).for_each(|d| sums[term][d] += w[d]),
             Some(k) => {

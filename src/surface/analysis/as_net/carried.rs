@@ -1,7 +1,7 @@
-//! Profiles carried by matrices as nets: S(u, v) = A(u) + K(u) G(v).
+//! Profiles moved by matrices as nets: S(u, v) = A(u) + K(u) G(v).
 //!
 //! The motion gets splines that are near it at the corners of a box of the profile, so they are as near everywhere in the box: S is
-//! affine in the point carried. The profile stays what it is where the net may run by its parameter, else it gets splines too.
+//! affine in the point moved. The profile stays what it is where the net may run by its parameter, else it gets splines too.
 
 use glam::{DVec3, DVec4};
 
@@ -9,7 +9,7 @@ use crate::base::bbox::Box3;
 use crate::base::range::Interval3;
 use crate::geometry::shapes::nurbs::{projected, weighted};
 use crate::geometry::{Jet, Nurbs};
-use crate::surface::analysis::as_net::family::{Course, Family};
+use crate::surface::analysis::as_net::family::{Family, Target};
 use crate::surface::analysis::as_net::splines::Breaks;
 use crate::surface::analysis::as_net::{DEGREES, NetForm, Off};
 use crate::surface::core::shape::Shape;
@@ -28,11 +28,11 @@ struct Carried<'s> {
     from: DVec3,
 }
 
-impl Course for Carried<'_> {
-    fn jet(&self, x: f64, lean: OneSided) -> Jet {
+impl Target for Carried<'_> {
+    fn jet(&self, x: f64, side: OneSided) -> Jet {
         let g = Jet { p: self.from, ..Jet::default() };
         let jet = match self.shape {
-            Shape::Framed(framed) => framed.jet_of(&g, x, lean),
+            Shape::Framed(framed) => framed.jet_of(&g, x, side),
             Shape::Sweep(sweep) => sweep.jet_of(&g, x),
             _ => return g,
         };
@@ -87,8 +87,8 @@ impl Motion {
 /// profile's parameter. Fails with shares of u and v about which too many pieces would be needed.
 pub fn carried(surface: &Surface, within: f64, same_uv: bool) -> Option<Result<NetForm, (f64, f64)>> {
     let shape = &surface.parts().shape;
-    let (rail, stretch) = match shape {
-        Shape::Framed(framed) => (framed.profile(), framed.stretch()),
+    let (rail, scale) = match shape {
+        Shape::Framed(framed) => (framed.profile(), framed.largest_scale()),
         Shape::Sweep(sweep) => (sweep.profile(), 1.0),
         _ => return None,
     };
@@ -96,11 +96,11 @@ pub fn carried(surface: &Surface, within: f64, same_uv: bool) -> Option<Result<N
     let share = if own.is_some() { 1.0 } else { 0.5 };
     let profile = match own {
         Some(profile) => Ok((profile, 0.0)),
-        None => splined(rail, share * within / stretch),
+        None => splined(rail, share * within / scale),
     };
     Some(profile.map_err(|v| (0.0, v)).and_then(|(profile, off)| {
         let motion = motion(shape, &profile, share * within).map_err(|u| (u, 0.0))?;
-        Ok(NetForm { net: net(&motion, &profile), off: Off::Bounded(motion.off + off * stretch) })
+        Ok(NetForm { net: net(&motion, &profile), off: Off::Bounded(motion.off + off * scale) })
     }))
 }
 
@@ -124,7 +124,7 @@ pub fn exact(rail: &Rail) -> Option<Nurbs> {
 
 /// Splines near the profile in its own v, and how near.
 fn splined(rail: &Rail, within: f64) -> Result<(Nurbs, f64), f64> {
-    let family = Family { courses: vec![Box::new(rail)], allowed: within };
+    let family = Family { targets: vec![Box::new(rail)], allowed: within };
     let fitted = family.fitted(DEGREES.map(Breaks::none))?;
     let poles = fitted.breaks.control(&fitted.splines[0]).into_iter().map(|p| p.extend(1.0)).collect();
     Ok((Nurbs::new(fitted.breaks.degree, fitted.breaks.vector(), poles), fitted.off))
@@ -143,8 +143,8 @@ fn motion(shape: &Shape, profile: &Nurbs, within: f64) -> Result<Motion, f64> {
         let frame = vec![at(DVec3::ZERO), at(by)];
         return Ok(Motion { degree: 1, knots: vec![0.0, 0.0, 1.0, 1.0], frame, origin, steps, off: 0.0 });
     }
-    let courses = (0..8).map(|k| Box::new(Carried { shape, from: corner(k) }) as Box<dyn Course>).collect();
-    let fitted = Family { courses, allowed: within }.fitted(DEGREES.map(Breaks::none))?;
+    let targets = (0..8).map(|k| Box::new(Carried { shape, from: corner(k) }) as Box<dyn Target>).collect();
+    let fitted = Family { targets, allowed: within }.fitted(DEGREES.map(Breaks::none))?;
     let poles: Vec<Vec<DVec3>> = [0, 1, 2, 4].map(|k| fitted.breaks.control(&fitted.splines[k])).to_vec();
     let frame = (0..poles[0].len()).map(|i| [0, 1, 2, 3].map(|c| poles[c][i])).collect();
     Ok(Motion { degree: fitted.breaks.degree, knots: fitted.breaks.vector(), frame, origin, steps, off: fitted.off })

@@ -2,7 +2,7 @@
 //!
 //! Breaks go where the error is largest: each round gives a span as many parts as the root of its error over the allowed
 //! one says, of the order of the degree plus 1 [de Boor 1978, chapter XII]. What samples pass is then bounded: about the middle
-//! of a stretch of half width h the difference e is at most |e| + h |e′| there plus ½ h² times the range of e″.
+//! of an interval of half width h the difference e is at most |e| + h |e′| there plus ½ h² times the range of e″.
 
 use glam::DVec3;
 
@@ -14,33 +14,51 @@ use crate::surface::analysis::as_net::splines::{Breaks, Hermite};
 use crate::surface::data::one_sided::OneSided;
 use crate::surface::rails::line::Line;
 
-/// Places in a span at which splines are compared with their curves.
-const PLACES: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
-/// Share of what is allowed that samples may be off: the rest is room for the bound.
-const SAMPLED: f64 = 0.8;
-/// Rounds that place breaks anew.
-const ROUNDS: usize = 12;
-/// Rounds that go all the way to what errors ask for; later ones only
-/// so far, as errors jump where breaks pass places at which derivatives do.
-const HASTY: usize = 4;
-const DAMPED: f64 = 0.6;
-/// A span is parted into so many at most by one round; at least a quarter of one stays.
-const PARTS: f64 = 4.0;
-/// Share of spans that each round adds: errors of neighbours are never quite equal.
-const ROOM: f64 = 0.01;
-/// Spans at most.
-const MOST_SPANS: usize = 1 << 12;
-/// Stretches of a span in which a spline is bounded, at most.
-const STRETCHES: usize = 1 << 11;
-/// Width of a span, as a share of the whole, at which one knot more at a jump begins to pay.
-const NARROW: f64 = 1.0 / 64.0;
-/// Times what is allowed: what a jump does over such a span where one knot more pays.
-const JUMP: f64 = 16.0;
+/// What steers the fit of splines with common breaks.
+struct Fitting {
+    /// Places in a span at which splines are compared with their curves.
+    places: [f64; 5],
+    /// Share of what is allowed that samples may be off: the rest is room for the bound.
+    sampled_share: f64,
+    /// Rounds that place breaks anew.
+    max_rounds: usize,
+    /// Rounds that go all the way to what errors ask for; later ones go
+    /// `damping` of it, as errors jump where breaks pass places at which derivatives do.
+    undamped_rounds: usize,
+    /// Share of the way that later rounds go.
+    damping: f64,
+    /// A span is parted into so many at most by one round; at least a quarter of one stays.
+    max_parts: f64,
+    /// Share of spans that each round adds: errors of neighbours are never quite equal.
+    added_share: f64,
+    /// Spans at most.
+    max_spans: usize,
+    /// Intervals of a span in which a spline is bounded, at most.
+    max_intervals: usize,
+    /// Width of a span, as a share of the whole, at which one knot more at a jump begins to pay.
+    narrow_share: f64,
+    /// Times what is allowed: what a jump does over such a span where one knot more pays.
+    jump_factor: f64,
+}
+
+const FIT: Fitting = Fitting {
+    places: [0.1, 0.3, 0.5, 0.7, 0.9],
+    sampled_share: 0.8,
+    max_rounds: 12,
+    undamped_rounds: 4,
+    damping: 0.6,
+    max_parts: 4.0,
+    added_share: 0.01,
+    max_spans: 1 << 12,
+    max_intervals: 1 << 11,
+    narrow_share: 1.0 / 64.0,
+    jump_factor: 16.0,
+};
 
 /// A curve under the surface's parameter.
-pub trait Course: Sync {
+pub trait Target: Sync {
     /// Point and derivatives, from the given side.
-    fn jet(&self, x: f64, lean: OneSided) -> Jet;
+    fn jet(&self, x: f64, side: OneSided) -> Jet;
     /// Bounds between two parameters.
     fn line(&self, x0: f64, x1: f64) -> Line;
     /// Parameters of its corners, ends left out.
@@ -62,7 +80,7 @@ pub struct Fitted {
 /// Curves that get splines.
 pub struct Family<'a> {
     /// The curves.
-    pub courses: Vec<Box<dyn Course + 'a>>,
+    pub targets: Vec<Box<dyn Target + 'a>>,
     /// How far a spline may be from its curve, model units.
     pub allowed: f64,
 }
@@ -92,20 +110,20 @@ impl Family<'_> {
 
     /// Parameters at which derivatives jump by more than splines could follow, with how many go on.
     fn jumps(&self) -> Vec<(f64, usize)> {
-        let each = par::map(self.courses.len(), |c| {
-            let course = &self.courses[c];
-            let corners = course.corners().into_iter().map(|x| (x, 0));
-            let breaks = course.breaks();
+        let each = par::map(self.targets.len(), |c| {
+            let target = &self.targets[c];
+            let corners = target.corners().into_iter().map(|x| (x, 0));
+            let breaks = target.breaks();
             let wide = |k: usize| {
                 let (low, high) = (if k == 0 { 0.0 } else { breaks[k - 1] }, breaks.get(k + 1).copied().unwrap_or(1.0));
-                (0.25 * (breaks[k] - low).min(high - breaks[k])).clamp(NUDGE, NARROW * NARROW)
+                (0.25 * (breaks[k] - low).min(high - breaks[k])).clamp(NUDGE, FIT.narrow_share * FIT.narrow_share)
             };
             let jump = |k: usize| {
                 let x = breaks[k];
-                let (a, b, h) = (course.jet(x, OneSided::Before), course.jet(x, OneSided::After), wide(k));
-                let next = (b.d2 - course.jet((x + h).min(1.0), OneSided::Before).d2) * (-1.0 / h);
-                let last = (a.d2 - course.jet((x - h).max(0.0), OneSided::After).d2) * (1.0 / h);
-                let limit = |order: i32| JUMP * self.allowed / math::powi(NARROW, order);
+                let (a, b, h) = (target.jet(x, OneSided::Before), target.jet(x, OneSided::After), wide(k));
+                let next = (b.d2 - target.jet((x + h).min(1.0), OneSided::Before).d2) * (-1.0 / h);
+                let last = (a.d2 - target.jet((x - h).max(0.0), OneSided::After).d2) * (1.0 / h);
+                let limit = |order: i32| FIT.jump_factor * self.allowed / math::powi(FIT.narrow_share, order);
                 let over = [a.d1.distance(b.d1) > limit(1), a.d2.distance(b.d2) > limit(2), next.distance(last) > limit(3)];
                 over.iter().position(|over| *over).map(|order| (x, order))
             };
@@ -122,7 +140,7 @@ impl Family<'_> {
 fn with_jumps(fixed: &Breaks, jumps: &[(f64, usize)], orders: usize) -> Breaks {
     let mut fixed = fixed.clone();
     for (x, smooth) in jumps.iter().filter(|jump| jump.1 < orders) {
-        fixed.put(*x, *smooth, if *smooth < 2 { NUDGE * NARROW } else { NUDGE });
+        fixed.put(*x, *smooth, if *smooth < 2 { NUDGE * FIT.narrow_share } else { NUDGE });
     }
     fixed
 }
@@ -139,7 +157,7 @@ impl Spreading<'_, '_> {
         loop {
             let splines = self.splines(&breaks);
             let off = self.off(&breaks, &splines);
-            let wide: Vec<usize> = (0..off.len()).filter(|k| off[*k] > SAMPLED * self.family.allowed).collect();
+            let wide: Vec<usize> = (0..off.len()).filter(|k| off[*k] > FIT.sampled_share * self.family.allowed).collect();
             if !wide.is_empty() {
                 breaks = halved(breaks, &wide)?;
                 continue;
@@ -162,10 +180,10 @@ impl Spreading<'_, '_> {
     fn placed(&self) -> Result<Breaks, f64> {
         let mut breaks = self.fixed.clone();
         let mut best: Option<Breaks> = None;
-        for round in 0..ROUNDS {
+        for round in 0..FIT.max_rounds {
             job::poll();
             let off = self.off(&breaks, &self.splines(&breaks));
-            let allowed = SAMPLED * self.family.allowed;
+            let allowed = FIT.sampled_share * self.family.allowed;
             let fits = off.iter().all(|off| *off <= allowed);
             let fewer = best.as_ref().is_none_or(|best| breaks.at.len() < best.at.len());
             if fits && fewer {
@@ -173,10 +191,10 @@ impl Spreading<'_, '_> {
             } else if fits || best.is_some() {
                 break;
             }
-            let root = if round < HASTY { 1.0 } else { DAMPED } / (breaks.degree + 1) as f64;
-            let parts: Vec<f64> = off.iter().map(|off| math::pow(off / allowed, root).clamp(1.0 / PARTS, PARTS)).collect();
-            breaks = self.enclosure(&breaks, &parts, 1.0 + ROOM * round as f64);
-            if breaks.spans() > MOST_SPANS {
+            let root = if round < FIT.undamped_rounds { 1.0 } else { FIT.damping } / (breaks.degree + 1) as f64;
+            let parts: Vec<f64> = off.iter().map(|off| math::pow(off / allowed, root).clamp(1.0 / FIT.max_parts, FIT.max_parts)).collect();
+            breaks = self.enclosure(&breaks, &parts, 1.0 + FIT.added_share * round as f64);
+            if breaks.spans() > FIT.max_spans {
                 let worst = (0..off.len()).max_by(|a, b| off[*a].total_cmp(&off[*b])).unwrap_or(0);
                 return Err(worst as f64 / off.len() as f64);
             }
@@ -207,12 +225,12 @@ impl Spreading<'_, '_> {
 
     /// The splines through the curves at the breaks.
     fn splines(&self, breaks: &Breaks) -> Vec<Hermite<DVec3>> {
-        par::map(self.family.courses.len(), |c| {
-            let course = &self.family.courses[c];
+        par::map(self.family.targets.len(), |c| {
+            let target = &self.family.targets[c];
             let mut spline = Hermite { value: Vec::new(), slope: Vec::new(), bend: Vec::new() };
             for (k, x) in breaks.at.iter().enumerate() {
-                let after = course.jet(*x, OneSided::After);
-                let before = if breaks.is_given(k) { course.jet(*x, OneSided::Before) } else { after };
+                let after = target.jet(*x, OneSided::After);
+                let before = if breaks.is_given(k) { target.jet(*x, OneSided::Before) } else { after };
                 spline.value.push(after.p);
                 // What goes on has one value.
                 let mean = |order: usize, a: DVec3, b: DVec3| if breaks.smooth[k] < order { [a, b] } else { [0.5 * (a + b); 2] };
@@ -229,9 +247,9 @@ impl Spreading<'_, '_> {
         let each = par::map(splines.len(), |c| {
             let at = |k: usize, share: f64| {
                 let x = breaks.at[k] + share * (breaks.at[k + 1] - breaks.at[k]);
-                breaks.jet(&splines[c], k, x)[0].distance(self.family.courses[c].jet(x, OneSided::After).p)
+                breaks.jet(&splines[c], k, x)[0].distance(self.family.targets[c].jet(x, OneSided::After).p)
             };
-            (0..breaks.spans()).map(|k| PLACES.map(|share| at(k, share)).into_iter().fold(0.0, f64::max)).collect::<Vec<f64>>()
+            (0..breaks.spans()).map(|k| FIT.places.map(|share| at(k, share)).into_iter().fold(0.0, f64::max)).collect::<Vec<f64>>()
         });
         (0..breaks.spans()).map(|k| each.iter().map(|off| off[k]).fold(0.0, f64::max)).collect()
     }
@@ -243,7 +261,7 @@ impl Spreading<'_, '_> {
         while let Some((a, b)) = open.pop() {
             job::poll();
             let (middle, h) = (0.5 * (a + b), 0.5 * (b - a));
-            let line = self.family.courses[c].line(a, b);
+            let line = self.family.targets[c].line(a, b);
             let [p, slope, ..] = breaks.jet(spline, k, middle);
             let off = line.mid.p.distance(p);
             // A second derivative lies between those at the ends but for what it bends itself: linearly, of degree 5.
@@ -256,7 +274,7 @@ impl Spreading<'_, '_> {
                 continue;
             }
             seen += 1;
-            if off > self.family.allowed || seen + open.len() > STRETCHES {
+            if off > self.family.allowed || seen + open.len() > FIT.max_intervals {
                 return f64::INFINITY;
             }
             open.push((middle, b));
@@ -268,7 +286,7 @@ impl Spreading<'_, '_> {
 
 /// These spans in two; the parameter of the first one where there would be too many.
 fn halved(mut breaks: Breaks, spans: &[usize]) -> Result<Breaks, f64> {
-    if breaks.spans() + spans.len() > MOST_SPANS {
+    if breaks.spans() + spans.len() > FIT.max_spans {
         return Err(breaks.at[spans[0]]);
     }
     for k in spans.iter().rev() {

@@ -180,7 +180,7 @@ impl Breaks {
         // Slope and bend at a break are its pair less its block times those at the next one. Bends count times a step, so that
         // all unknowns are slopes in size.
         let unit = self.step(from);
-        let mut done: Vec<(Block, [T; 2])> = vec![([[0.0; 2]; 2], [of.slope[from][1], of.bend[from][1] * unit])];
+        let mut done: Vec<(Matrix2, [T; 2])> = vec![([[0.0; 2]; 2], [of.slope[from][1], of.bend[from][1] * unit])];
         for k in from + 1..to {
             let (a, b) = (self.step(k - 1), self.step(k));
             let (left, right) = ((of.value[k] - of.value[k - 1]) * (1.0 / a), (of.value[k + 1] - of.value[k]) * (1.0 / b));
@@ -215,9 +215,9 @@ impl Breaks {
 }
 
 /// Two rows of two.
-type Block = [[f64; 2]; 2];
+type Matrix2 = [[f64; 2]; 2];
 
-fn inverse(m: Block) -> Block {
+fn inverse(m: Matrix2) -> Matrix2 {
     let by = 1.0 / (m[0][0] * m[1][1] - m[0][1] * m[1][0]);
     [[m[1][1] * by, -m[0][1] * by], [-m[1][0] * by, m[0][0] * by]]
 }

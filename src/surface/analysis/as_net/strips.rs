@@ -20,7 +20,7 @@ const MOST_STRIPS: usize = 1 << 10;
 const PLACES: [f64; 3] = [0.25, 0.5, 0.75];
 
 /// A parameter of the square, from one side.
-type At = (f64, OneSided);
+type SidedParameter = (f64, OneSided);
 
 /// Bicubic pieces in the making.
 pub struct Fit<'s> {
@@ -43,7 +43,7 @@ impl<'s> Fit<'s> {
     }
 
     /// Point, ∂u, ∂v and ∂uv over the square.
-    fn jets(&self, us: &[At], vs: &[At]) -> Vec<Jet2> {
+    fn jets(&self, us: &[SidedParameter], vs: &[SidedParameter]) -> Vec<Jet2> {
         if self.beside != 0.0 {
             let places = vs.iter().flat_map(|v| us.iter().map(move |u| (*u, *v)));
             return places.map(|place| beside(self.surface, place, self.beside)).collect();
@@ -90,10 +90,10 @@ impl<'s> Fit<'s> {
         let inside = |stops: &[f64]| -> Vec<f64> { stops.windows(2).flat_map(|w| PLACES.map(|x| w[0] + (w[1] - w[0]) * x)).collect() };
         let (us, vs) = (inside(&self.us), inside(&self.vs));
         let far = |us: &[f64], vs: &[f64]| -> Vec<bool> {
-            let lean = |list: &[f64]| list.iter().map(|x| (*x, OneSided::After)).collect::<Vec<At>>();
+            let side = |list: &[f64]| list.iter().map(|x| (*x, OneSided::After)).collect::<Vec<SidedParameter>>();
             let mut found = vec![DVec3::ZERO; us.len() * vs.len()];
             net.grid(us, vs, &mut found);
-            let jets = self.jets(&lean(us), &lean(vs));
+            let jets = self.jets(&side(us), &side(vs));
             found.iter().zip(jets).map(|(p, jet)| p.distance(jet.p) > 0.5 * self.tolerance.point).collect()
         };
         let n = PLACES.len();
@@ -120,8 +120,9 @@ impl<'s> Fit<'s> {
 
     /// The bicubic pieces as one net; inner knots are double, and triple where the derivative across them jumps.
     fn net(&self) -> NurbsSurface {
-        let sided =
-            |stops: &[f64]| -> Vec<At> { stops.windows(2).flat_map(|w| [(w[0], OneSided::After), (w[1], OneSided::Before)]).collect() };
+        let sided = |stops: &[f64]| -> Vec<SidedParameter> {
+            stops.windows(2).flat_map(|w| [(w[0], OneSided::After), (w[1], OneSided::Before)]).collect()
+        };
         let (us, vs) = (sided(&self.us), sided(&self.vs));
         let jets = self.jets(&us, &vs);
         let at = |i: usize, j: usize| &jets[j * us.len() + i];
@@ -173,15 +174,15 @@ fn knots(stops: &[f64], smooth: &[bool]) -> Vec<f64> {
 
 /// The jet at a distance: point, ∂u, ∂v and ∂uv; zero where a surface has no normal.
 pub(crate) fn beside(surface: &Surface, (u, v): ((f64, OneSided), (f64, OneSided)), distance: f64) -> Jet2 {
-    let lean = (u.1, v.1);
+    let side = (u.1, v.1);
     let step = |x: (f64, OneSided)| if x.1 == OneSided::After && x.0 + NUDGE <= 1.0 || x.0 < NUDGE { NUDGE } else { -NUDGE };
     let (du, dv) = (step(u), step(v));
-    let jet = surface.jet_one_sided(u.0, v.0, lean);
-    let normal = |u: f64, v: f64| surface.normal_lean(u, v, lean);
+    let jet = surface.jet_one_sided(u.0, v.0, side);
+    let normal = |u: f64, v: f64| surface.normal_one_sided(u, v, side);
     let n = normal(u.0, v.0);
     let differences = || ((normal(u.0 + du, v.0) - n) / du, (normal(u.0, v.0 + dv) - n) / dv);
     let (nu, nv) = slopes(&jet).unwrap_or_else(differences);
-    let beyond = slopes(&surface.jet_one_sided(u.0, v.0 + dv, lean)).map_or(nu, |next| next.0);
+    let beyond = slopes(&surface.jet_one_sided(u.0, v.0 + dv, side)).map_or(nu, |next| next.0);
     Jet2 {
         p: jet.p + n * distance,
         du: jet.du + nu * distance,

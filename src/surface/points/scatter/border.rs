@@ -19,11 +19,11 @@ use crate::surface::faults::BorderFault;
 use crate::surface::rails::side::{Border, Side as Edge};
 use crate::surface::rails::trim_curve::{Pcurve, TrimCurve};
 use crate::surface::shapes::height_field::Field;
-use crate::surface::trims::trim::{TrimLoop, assembled};
+use crate::surface::trims::trim_loop::{TrimLoop, assembled};
 
 /// A side of the border: its two points, and the piece that lies along it.
 #[derive(Clone, Copy, Debug)]
-pub struct Side {
+pub struct TriangleSide {
     /// Its first point, counter-clockwise.
     pub from: usize,
     /// Its last point.
@@ -33,12 +33,12 @@ pub struct Side {
 }
 
 /// A triangle over a side of the border whose angles there have no larger tangent (about 3°) is no part of the surface: its points are
-/// about in a row, as those of a grid are where the plane leans, and in its narrow height the surface would bend without bounds.
+/// about in a row, as those of a grid are where the plane sides, and in its narrow height the surface would bend without bounds.
 const THIN: f64 = 0.05;
 
 /// The triangles without thin ones along the border, and those no higher than `least` (points that are in a row but for rounding), and
 /// the sides of the border counter-clockwise, beginning with the first point.
-pub fn peeled(triangles: Vec<[usize; 3]>, flat: &[DVec2], least: f64) -> (Vec<[usize; 3]>, Vec<Side>) {
+pub fn peeled(triangles: Vec<[usize; 3]>, flat: &[DVec2], least: f64) -> (Vec<[usize; 3]>, Vec<TriangleSide>) {
     let left = without_thin(triangles, flat, least);
     let mut next: BTreeMap<usize, (usize, usize)> = BTreeMap::new();
     for ((from, to), t) in outer(&left) {
@@ -49,7 +49,7 @@ pub fn peeled(triangles: Vec<[usize; 3]>, flat: &[DVec2], least: f64) -> (Vec<[u
     let Some(&first) = next.keys().next() else { return (left, sides) };
     let mut from = first;
     while let Some((to, piece)) = next.remove(&from) {
-        sides.push(Side { from, to, piece });
+        sides.push(TriangleSide { from, to, piece });
         from = to;
     }
     (left, sides)
@@ -104,7 +104,7 @@ pub fn opposite(triangles: &[[usize; 3]]) -> Vec<[Option<usize>; 3]> {
 }
 
 /// The sides in runs along one line each, beginning at a corner.
-pub fn runs(sides: &[Side], flat: &[DVec2], tolerance: &Tolerance) -> Vec<Vec<Side>> {
+pub fn runs(sides: &[TriangleSide], flat: &[DVec2], tolerance: &Tolerance) -> Vec<Vec<TriangleSide>> {
     let n = sides.len();
     let corner = |k: usize| {
         let (before, after) = (&sides[(k + n - 1) % n], &sides[k]);
@@ -113,7 +113,7 @@ pub fn runs(sides: &[Side], flat: &[DVec2], tolerance: &Tolerance) -> Vec<Vec<Si
         off > tolerance.point
     };
     let start = (0..n).find(|k| corner(*k)).unwrap_or(0);
-    let mut found: Vec<Vec<Side>> = Vec::new();
+    let mut found: Vec<Vec<TriangleSide>> = Vec::new();
     for k in (0..n).map(|k| (start + k) % n) {
         match found.last_mut() {
             Some(run) if !corner(k) => run.push(sides[k]),
@@ -124,9 +124,9 @@ pub fn runs(sides: &[Side], flat: &[DVec2], tolerance: &Tolerance) -> Vec<Vec<Si
 }
 
 /// The surface of a field inside its border. Where that is the whole square it has four sides and no loop.
-pub fn surface(field: Field, runs: &[Vec<Side>], points: usize, origin: Origin, tolerance: &Tolerance) -> Result<Surface> {
+pub fn surface(field: Field, runs: &[Vec<TriangleSide>], points: usize, origin: Origin, tolerance: &Tolerance) -> Result<Surface> {
     let curves: Vec<Curve> = runs.iter().map(|run| curve(&field, run, origin)).collect();
-    let corner = |run: &Vec<Side>| field.pieces()[run[0].piece].corners[0];
+    let corner = |run: &Vec<TriangleSide>| field.pieces()[run[0].piece].corners[0];
     let corners: Vec<DVec2> = runs.iter().map(corner).collect();
     let square = corners.len() == 4 && corners.iter().all(|c| c.distance(c.round()) <= NUDGE * NUDGE);
     let triangles = field.pieces().len() / 3;
@@ -147,25 +147,25 @@ pub fn surface(field: Field, runs: &[Vec<Side>], points: usize, origin: Origin, 
     if square {
         return Ok(base);
     }
-    let mut walk = TrimLoop { borders: Vec::new(), courses: Vec::new(), chains: Vec::new() };
+    let mut trim_loop = TrimLoop { borders: Vec::new(), trim_curves: Vec::new(), chains: Vec::new() };
     for (curve, start) in curves.iter().zip(corners) {
         let chain = Chain::of_curve(curve);
-        let pcurve = Pcurve::follow(&base, (&chain, 0.0, 1.0), start, tolerance.point).map_err(|off| {
+        let pcurve = Pcurve::follow(&base, &chain, (0.0, 1.0), start, tolerance.point).map_err(|off| {
             let (off, at) = (off.distance, off.at);
             Fault::from(BorderFault::LoopOutsideSurface { of: origin, surface: origin, off, at, tolerance: tolerance.point })
         })?;
-        walk.borders.push(Border::chain(chain.clone(), false));
-        walk.courses.push(TrimCurve::Pcurve(Arc::new(pcurve)));
-        walk.chains.push(chain);
+        trim_loop.borders.push(Border::chain(chain.clone(), false));
+        trim_loop.trim_curves.push(TrimCurve::Pcurve(Arc::new(pcurve)));
+        trim_loop.chains.push(chain);
     }
-    let made = assembled(&base, vec![walk], origin)?;
+    let made = assembled(&base, vec![trim_loop], origin)?;
     Ok(Surface::new(Parts { kind: SurfaceKind::Scatter, ..made.parts().clone() }))
 }
 
 /// The curve of the surface over a run of sides: the cubics of the pieces along it.
-fn curve(field: &Field, run: &[Side], origin: Origin) -> Curve {
+fn curve(field: &Field, run: &[TriangleSide], origin: Origin) -> Curve {
     let mut t = 0.0;
-    let cubic = |side: &Side| {
+    let cubic = |side: &TriangleSide| {
         let piece = &field.pieces()[side.piece];
         let (a, b) = (piece.corners[0], piece.corners[1]);
         let poles: Vec<DVec3> = (0..4).zip(piece.side_heights()).map(|(k, h)| field.lifted(a.lerp(b, f64::from(k) / 3.0), h)).collect();

@@ -18,7 +18,7 @@ const RINGS: usize = 4;
 /// Share of the mean distance below which nearer neighbours weigh no more.
 const NEAR: f64 = 0.5;
 
-type Row = [f64; 5];
+type SlopeRow = [f64; 5];
 
 /// The gradient of the height (z over x and y) at each point; `triangles` join them.
 pub fn slopes(points: &[DVec3], triangles: &[[usize; 3]]) -> Vec<DVec2> {
@@ -56,7 +56,7 @@ fn slope(points: &[DVec3], k: usize, near: &[usize]) -> DVec2 {
     if unit <= 0.0 {
         return DVec2::ZERO;
     }
-    let mut rows: Vec<(Row, f64)> = arms
+    let mut rows: Vec<(SlopeRow, f64)> = arms
         .iter()
         .map(|arm| {
             let d = arm.truncate() / unit;
@@ -94,8 +94,8 @@ fn slope(points: &[DVec3], k: usize, near: &[usize]) -> DVec2 {
 }
 
 /// The linear part of the nearest plane through the origin.
-fn level(rows: &[(Row, f64)]) -> DVec2 {
-    let of = |f: &dyn Fn(&(Row, f64)) -> f64| rows.iter().map(f).sum::<f64>();
+fn level(rows: &[(SlopeRow, f64)]) -> DVec2 {
+    let of = |f: &dyn Fn(&(SlopeRow, f64)) -> f64| rows.iter().map(f).sum::<f64>();
     let x2 = of(&|(row, _)| row[0] * row[0]);
     if x2 <= 0.0 {
         let y2 = of(&|(row, _)| row[1] * row[1]);
@@ -103,14 +103,14 @@ fn level(rows: &[(Row, f64)]) -> DVec2 {
     }
     // The second column without what it has of the first.
     let share = of(&|(row, _)| row[0] * row[1]) / x2;
-    let aside = |row: &Row| row[1] - share * row[0];
+    let aside = |row: &SlopeRow| row[1] - share * row[0];
     let y2 = of(&|(row, _)| aside(row) * aside(row));
     let y = if y2 > 0.0 { of(&|(row, rest)| aside(row) * rest) / y2 } else { 0.0 };
     DVec2::new(of(&|(row, rest)| row[0] * rest) / x2 - share * y, y)
 }
 
 /// The lower factor of a symmetric positive matrix.
-fn cholesky(a: [Row; 5]) -> Option<[Row; 5]> {
+fn cholesky(a: [SlopeRow; 5]) -> Option<[SlopeRow; 5]> {
     let mut l = [[0.0; 5]; 5];
     for i in 0..5 {
         for j in 0..=i {
@@ -128,7 +128,7 @@ fn cholesky(a: [Row; 5]) -> Option<[Row; 5]> {
     Some(l)
 }
 
-fn solved(l: &[Row; 5], mut b: Row) -> Row {
+fn solved(l: &[SlopeRow; 5], mut b: SlopeRow) -> SlopeRow {
     for i in 0..5 {
         b[i] = (b[i] - (0..i).map(|k| l[i][k] * b[k]).sum::<f64>()) / l[i][i];
     }

@@ -31,7 +31,7 @@ impl Pair<'_> {
     }
 
     /// The common place a share of the way from one to the next.
-    fn between(&self, from: &Spot, to: &Spot, share: f64) -> Option<project::Spot> {
+    fn between(&self, from: &Spot, to: &Spot, share: f64) -> Option<project::Landing> {
         let chord = to.p - from.p;
         let length = chord.length();
         let across = chord / length;
@@ -48,7 +48,7 @@ impl Pair<'_> {
         let way = if spot.sine <= NUDGE.sqrt() { straight } else { spot.way };
         let rise = way.dot(across);
         let d1 = if rise.abs() > 0.5 { way * (length / rise) } else { chord };
-        Some(project::Spot { uv: spot.a, p: spot.p, d1 })
+        Some(project::Landing { uv: spot.a, p: spot.p, d1 })
     }
 }
 

@@ -10,7 +10,7 @@ use crate::base::job;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::construct::fewest::{finer, swings, turns};
-use crate::geometry::construct::fit::{bessel, bessel_last};
+use crate::geometry::construct::fit_curve::{bessel, bessel_last};
 use crate::geometry::shapes::least_squares::{Cubics, DEGREE, Problem};
 use crate::surface::core::surface::Surface;
 use crate::surface::data::kind::SurfaceKind;
@@ -24,7 +24,7 @@ use crate::surface::shapes::nurbs::NurbsSurface;
 pub fn fit(rows: &[Vec<DVec3>], within: Option<f64>, origin: Origin, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
     let (spans, _) = mean_spans(rows, origin, tolerance)?;
     let (whole, notes) = fitted(rows, &parabolic(rows, &spans), origin, tolerance)?;
-    let net = within.and_then(|within| Search::new(rows, &spans, within).nearest()).unwrap_or(whole);
+    let net = within.and_then(|within| NetSearch::new(rows, &spans, within).nearest()).unwrap_or(whole);
     Ok((net.surface(SurfaceKind::Fit, origin, tolerance), notes))
 }
 
@@ -44,7 +44,7 @@ fn parabolic(rows: &[Vec<DVec3>], spans: &Spans) -> Tangents {
 }
 
 /// Points to come near to, with their parameters from 0 to 1.
-struct Search<'a> {
+struct NetSearch<'a> {
     rows: &'a [Vec<DVec3>],
     columns: Vec<Vec<DVec3>>,
     parameters: (Vec<f64>, Vec<f64>),
@@ -54,20 +54,20 @@ struct Search<'a> {
 }
 
 /// How far the lines of one direction are from their points.
-struct Off {
+struct Misses {
     /// At each parameter.
     largest: Vec<f64>,
     /// The root of the mean square of all.
     mean: f64,
 }
 
-impl Off {
+impl Misses {
     fn worst(&self) -> f64 {
         self.largest.iter().copied().fold(0.0, f64::max)
     }
 }
 
-impl<'a> Search<'a> {
+impl<'a> NetSearch<'a> {
     fn new(rows: &'a [Vec<DVec3>], spans: &Spans, within: f64) -> Self {
         let columns: Vec<Vec<DVec3>> = (0..rows[0].len()).map(|i| rows.iter().map(|row| row[i]).collect()).collect();
         let mut turned: Vec<Vec<f64>> = rows.iter().map(|row| turns(row, false)).collect();
@@ -114,7 +114,7 @@ impl<'a> Search<'a> {
     }
 
     /// How far lines along u, or along v, are from their points by themselves.
-    fn own_off(&self, cubics: &Cubics, along_u: bool) -> Option<Off> {
+    fn own_off(&self, cubics: &Cubics, along_u: bool) -> Option<Misses> {
         let (lines, parameters) = if along_u { (self.rows, &self.parameters.0) } else { (&self.columns[..], &self.parameters.1) };
         let problem = Problem::new(cubics, parameters)?;
         let knots = cubics.knots();
@@ -131,7 +131,7 @@ impl<'a> Search<'a> {
             }
         }
         let count = (lines.len() * parameters.len()) as f64;
-        Some(Off { largest, mean: (squares / count).sqrt() })
+        Some(Misses { largest, mean: (squares / count).sqrt() })
     }
 
     fn net(&self, u: &Cubics, v: &Cubics) -> Option<NurbsSurface> {

@@ -14,7 +14,8 @@ use crate::base::origin::Origin;
 use crate::geometry::construct::build::{all_different, composite, enough, finite_points};
 use crate::geometry::construct::fewest::{finer, swings, turns};
 use crate::geometry::construct::spline::{open_slopes, periodic_slopes, through};
-use crate::geometry::curves::curve::{Curve, Kind, Shape};
+use crate::geometry::curves::curve::{Curve, Shape};
+use crate::geometry::data::kind::Kind;
 use crate::geometry::shapes::least_squares::{Cubics, DEGREE, Problem};
 use crate::geometry::shapes::nurbs::Nurbs;
 
@@ -98,7 +99,7 @@ fn run(points: &[DVec3], tolerance: Option<f64>, tangents: [Option<DVec3>; 2]) -
         let ends = [tangents[0].unwrap_or_else(|| bessel(points, &spans)), tangents[1].unwrap_or_else(|| bessel_last(points, &spans))];
         through(points, &spans, &open_slopes(points, &spans, ends.map(Some)))
     };
-    tolerance.and_then(|tolerance| Search::new(points, tolerance, false).nearest()).unwrap_or_else(whole)
+    tolerance.and_then(|tolerance| FitSearch::new(points, tolerance, false).nearest()).unwrap_or_else(whole)
 }
 
 /// Closed, without corners.
@@ -108,11 +109,11 @@ fn ring(points: &[DVec3], tolerance: Option<f64>) -> Nurbs {
         let spans = chords(&around);
         through(&around, &spans, &periodic_slopes(&around, &spans))
     };
-    tolerance.and_then(|tolerance| Search::new(&around, tolerance, true).nearest()).unwrap_or_else(whole)
+    tolerance.and_then(|tolerance| FitSearch::new(&around, tolerance, true).nearest()).unwrap_or_else(whole)
 }
 
 /// Points to come near to; a closed row repeats the first one at its end.
-struct Search<'a> {
+struct FitSearch<'a> {
     points: &'a [DVec3],
     tolerance: f64,
     closed: bool,
@@ -121,14 +122,14 @@ struct Search<'a> {
 }
 
 /// A curve with the parameters of the points on it and how far it is from each.
-struct Found {
+struct FittedSpline {
     cubics: Cubics,
     curve: Nurbs,
     parameters: Vec<f64>,
     off: Vec<f64>,
 }
 
-impl<'a> Search<'a> {
+impl<'a> FitSearch<'a> {
     fn new(points: &'a [DVec3], tolerance: f64, closed: bool) -> Self {
         Self { points, tolerance, closed, turns: turns(points, closed) }
     }
@@ -153,12 +154,12 @@ impl<'a> Search<'a> {
     }
 
     /// Whether all data are within the tolerance, and nothing swings out between them.
-    fn is_near(&self, found: &Found) -> bool {
+    fn is_near(&self, found: &FittedSpline) -> bool {
         found.off.iter().all(|off| *off <= self.tolerance) && self.is_calm(found)
     }
 
     /// Whether it runs near the chords between the data, as far as these let it.
-    fn is_calm(&self, found: &Found) -> bool {
+    fn is_calm(&self, found: &FittedSpline) -> bool {
         let turns = &self.turns;
         let calm = |k: usize| {
             let (a, b, turn) = (self.points[k], self.points[k + 1], turns[k].max(turns[k + 1]));
@@ -169,7 +170,7 @@ impl<'a> Search<'a> {
     }
 
     /// Without the knots that are not needed.
-    fn spared(&self, mut found: Found) -> Found {
+    fn spared(&self, mut found: FittedSpline) -> FittedSpline {
         let least = if self.closed { 2 } else { 1 };
         let mut i = 1;
         while i + 1 < found.cubics.breaks.len() && found.cubics.breaks.len() - 1 > least {
@@ -185,9 +186,9 @@ impl<'a> Search<'a> {
     }
 
     /// Least squares with parameters corrected; the best of the rounds.
-    fn best(&self, cubics: Cubics, parameters: &[f64]) -> Option<Found> {
+    fn best(&self, cubics: Cubics, parameters: &[f64]) -> Option<FittedSpline> {
         let mut found = self.solved(cubics, parameters.to_vec())?;
-        let largest = |found: &Found| found.off.iter().copied().fold(0.0, f64::max);
+        let largest = |found: &FittedSpline| found.off.iter().copied().fold(0.0, f64::max);
         for _ in 0..ROUNDS {
             if self.is_near(&found) {
                 break;
@@ -201,7 +202,7 @@ impl<'a> Search<'a> {
         Some(found)
     }
 
-    fn solved(&self, cubics: Cubics, parameters: Vec<f64>) -> Option<Found> {
+    fn solved(&self, cubics: Cubics, parameters: Vec<f64>) -> Option<FittedSpline> {
         // The last point of a closed row is the first one again.
         let used = parameters.len() - usize::from(self.closed);
         let mut poles = Problem::new(&cubics, &parameters[..used])?.solve(&self.points[..used]);
@@ -214,11 +215,11 @@ impl<'a> Search<'a> {
         let curve = Nurbs::new(DEGREE, cubics.knots(), poles);
         let curve = if self.closed { curve.part(first, last) } else { curve };
         let off = parameters.iter().zip(self.points).map(|(t, p)| curve.jet(*t).p.distance(*p)).collect();
-        Some(Found { cubics, curve, parameters, off })
+        Some(FittedSpline { cubics, curve, parameters, off })
     }
 
     /// Parameters a Newton step nearer to the feet of the points; none where they would change their order.
-    fn corrected(&self, found: &Found) -> Option<Vec<f64>> {
+    fn corrected(&self, found: &FittedSpline) -> Option<Vec<f64>> {
         let n = found.parameters.len();
         let moved = |i: usize| {
             let t = found.parameters[i];

@@ -1,0 +1,60 @@
+//! Normals of surfaces, at poles too.
+
+use glam::DVec3;
+
+use crate::base::tolerance::{POLE_STEP, Tolerance};
+use crate::surface::core::surface::Surface;
+use crate::surface::data::jet::unit_normal;
+use crate::surface::data::kind::Domain;
+use crate::surface::data::one_sided::OneSided;
+use crate::surface::rails::side::Side;
+
+impl Surface {
+    /// Unit normal `du × dv`; at a pole the limit; zero only where the surface is singular.
+    pub fn normal(&self, u: f64, v: f64) -> DVec3 {
+        self.normal_one_sided(u, v, (OneSided::After, OneSided::After))
+    }
+
+    /// Unit normal of the smooth piece on the given side, see [`Surface::jet_one_sided`].
+    pub fn normal_one_sided(&self, u: f64, v: f64, side: (OneSided, OneSided)) -> DVec3 {
+        let jet = self.jet_one_sided(u, v, side);
+        if let Some(normal) = unit_normal(&jet) {
+            return normal;
+        }
+        let at_end = [v == 0.0, u == 1.0, v == 1.0, u == 0.0];
+        let pole =
+            (0..4).find(|&k| at_end[k] && self.parts().domain == Domain::Square && matches!(self.parts().borders[k].side, Side::Pole(_)));
+        pole.map_or(DVec3::ZERO, |k| self.pole_normal(k))
+    }
+
+    /// The normal of the pole on side `k`: the cross product of the tangents of the two borders that end there, or the
+    /// mean of the normals a step away where these are parallel.
+    fn pole_normal(&self, k: usize) -> DVec3 {
+        let place = |along: f64, inward: f64| match k {
+            0 => (along, inward),
+            1 => (1.0 - inward, along),
+            2 => (along, 1.0 - inward),
+            _ => (inward, along),
+        };
+        let inward = |along: f64| {
+            let (u, v) = place(along, 0.0);
+            let side =
+                (if u == 1.0 { OneSided::Before } else { OneSided::After }, if v == 1.0 { OneSided::Before } else { OneSided::After });
+            let jet = self.jet_one_sided(u, v, side);
+            [jet.dv, -jet.du, -jet.dv, jet.du][k]
+        };
+        const SAMPLES: u32 = 16;
+        let mean = (0..SAMPLES).fold(DVec3::ZERO, |sum, i| {
+            let (u, v) = place((f64::from(i) + 0.5) / f64::from(SAMPLES), POLE_STEP);
+            sum + unit_normal(&self.jet(u, v)).unwrap_or(DVec3::ZERO)
+        });
+        let (first, last) = (inward(0.0), inward(1.0));
+        let cross = first.cross(last);
+        if cross.length() > Tolerance::new(0.0, 0.0).angle * first.length() * last.length() {
+            // Borders say the plane, the neighbourhood says which side is up.
+            let normal = cross.normalize_or_zero();
+            return if normal.dot(mean) < 0.0 { -normal } else { normal };
+        }
+        mean.normalize_or_zero()
+    }
+}
