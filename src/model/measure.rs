@@ -8,7 +8,7 @@ use glam::{DMat3, DVec3};
 
 use super::measure_cut_triangles::cut_triangles_integral;
 use super::measure_flat::flat_integral;
-use super::measure_quadrature::{Rectangle, WHOLE, integral};
+use super::measure_quadrature::{Integrand, Rectangle, WHOLE, integral};
 use super::measure_triangles::triangles_integral;
 use super::measure_trimmed::trimmed_integral;
 use crate::base::bbox::Box3;
@@ -89,7 +89,7 @@ pub fn area_between(surface: &Surface, part: Rectangle) -> f64 {
         return area(surface);
     }
     let size = |jet: &Jet2| [jet.du.cross(jet.dv).length()];
-    integral(surface, part, MEASURE_ACCURACY, (&size, &size)).0[0]
+    integral(surface, part, MEASURE_ACCURACY, Integrand { value: &size, size: &size }).0[0]
 }
 
 /// Centre of the length of a curve.
@@ -199,16 +199,17 @@ pub(super) fn over<const N: usize>(
         let (value, most) = (at(jet), at_all(jet, jet.p - about, f));
         std::array::from_fn(|i| value[i].abs() + LEAST_SIZE * most[i].abs())
     };
+    let integrand = Integrand { value: &at, size: &sized };
     match (surface.domain(), surface.kind()) {
         (Domain::Unbounded, _) => ([0.0; N], [0.0; N]),
-        (_, SurfaceKind::Plane) => flat_integral(surface, accuracy, (&at, &sized)),
+        (_, SurfaceKind::Plane) => flat_integral(surface, accuracy, integrand),
         (_, SurfaceKind::Scatter) => triangles_integral(surface, &surface.triangles(), accuracy, &at),
-        _ if surface.is_flat() => flat_integral(surface, accuracy, (&at, &sized)),
+        _ if surface.is_flat() => flat_integral(surface, accuracy, integrand),
         (Domain::Loop, _) => {
             let patchwise = if surface.is_scattered() { cut_triangles_integral(surface, accuracy, &at) } else { None };
-            patchwise.unwrap_or_else(|| trimmed_integral(surface, accuracy, (&at, &sized)))
+            patchwise.unwrap_or_else(|| trimmed_integral(surface, accuracy, integrand))
         }
-        _ => integral(surface, WHOLE, accuracy, (&at, &sized)),
+        _ => integral(surface, WHOLE, accuracy, integrand),
     }
 }
 

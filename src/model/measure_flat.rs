@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
-use super::measure_quadrature::{MAX_DEPTH, ORDERS, Sums, small};
-use crate::base::job;
+use super::measure_quadrature::{Integrand, MAX_DEPTH, ORDERS, Sums, add, small};
 use crate::base::quadrature::gauss_legendre;
+use crate::base::{job, math};
 use crate::network::Chain;
 use crate::surface::{Domain, Jet2, Side, Surface};
 
@@ -36,64 +36,102 @@ fn gaps(walk: &Boundary) -> impl Iterator<Item = (DVec3, DVec3)> {
     (0..walk.len()).map(ends).filter(|(a, b)| a != b)
 }
 
-/// The integral of N polynomials (up to degree seven in the coordinates) over a flat face, from its boundary by Green's theorem.
-///
-/// `f` gets jets with unit derivatives in the plane, their cross product the surface's normal.
-pub fn flat_integral<const N: usize>(
-    surface: &Surface,
-    accuracy: f64,
-    (f, sized): (&impl Fn(&Jet2) -> Sums<N>, &impl Fn(&Jet2) -> Sums<N>),
-) -> (Sums<N>, Sums<N>) {
-    let loops = boundary(surface);
-    let gaps: Vec<(DVec3, DVec3)> = loops.iter().flat_map(gaps).collect();
-    let walk = loops.concat();
-    let Some(origin) = walk.first().map(|(chain, from, _)| chain.point(*from)) else { return ([0.0; N], [0.0; N]) };
-    let rules = [gauss_legendre(ORDERS[2]), gauss_legendre(ORDERS[3])];
-    let runs: Vec<(usize, f64, f64)> = walk
-        .iter()
-        .enumerate()
-        .flat_map(|(k, (chain, from, to))| {
-            let mut stops = crate::surface::chain_breaks(chain);
-            stops.insert(0, 0.0);
-            stops.push(1.0);
-            if from > to {
-                stops.reverse();
-            }
-            stops.windows(2).map(|w| (k, w[0], w[1])).collect::<Vec<_>>()
-        })
-        .collect();
-    // The area vector says where the plane is and which side is up.
-    let vector = |rule: &[(f64, f64)]| {
-        runs.iter().fold(DVec3::ZERO, |sum, &(k, a, b)| {
+/// A run of a boundary: its chain by number, and the fractions it is run between.
+type Run = (usize, f64, f64);
+
+/// Runs of the chains between the places at which they are less than smooth.
+fn runs(walk: &Boundary) -> Vec<Run> {
+    let of_chain = |(k, (chain, from, to)): (usize, &(Chain, f64, f64))| {
+        let mut stops = crate::surface::chain_breaks(chain);
+        stops.insert(0, 0.0);
+        stops.push(1.0);
+        if from > to {
+            stops.reverse();
+        }
+        stops.windows(2).map(|w| (k, w[0], w[1])).collect::<Vec<_>>()
+    };
+    walk.iter().enumerate().flat_map(of_chain).collect()
+}
+
+/// A flat face with its frame.
+struct FlatFace {
+    walk: Boundary,
+    origin: DVec3,
+    /// Unit vectors in the plane, their cross product the normal.
+    eu: DVec3,
+    ev: DVec3,
+    /// The rule from the line through the origin along `ev`.
+    inner: Vec<(f64, f64)>,
+}
+
+impl FlatFace {
+    /// `None` where the boundary has no area.
+    fn new(walk: Boundary, runs: &[Run], rule: &[(f64, f64)]) -> Option<Self> {
+        let origin = walk.first().map(|(chain, from, _)| chain.point(*from))?;
+        // The area vector says where the plane is and which side is up.
+        let vector = runs.iter().fold(DVec3::ZERO, |sum, &(k, a, b)| {
             rule.iter().fold(sum, |sum, (x, w)| {
                 let jet = walk[k].0.jet(0.5 * (a + b) + 0.5 * (b - a) * x);
                 sum + (jet.p - origin).cross(jet.d1) * (0.25 * (b - a) * w)
             })
-        })
-    };
-    let Some(normal) = crate::base::math::unit(vector(&rules[1]), 0.0) else { return ([0.0; N], [0.0; N]) };
-    let eu = crate::base::math::any_normal(normal);
-    let ev = normal.cross(eu);
-    let inner = gauss_legendre(ORDERS[0]);
-    // ∬ f da db = ∮ F db with F = ∫ f da from the origin's line.
-    let along = |p: DVec3, f: &dyn Fn(&Jet2) -> Sums<N>| {
-        let (a, foot) = ((p - origin).dot(eu), p - eu * (p - origin).dot(eu));
-        inner.iter().fold([0.0; N], |sum, (x, w)| {
-            let jet = Jet2 { p: foot + eu * (0.5 * a * (1.0 + x)), du: eu, dv: ev, ..Jet2::default() };
+        });
+        let normal = math::unit(vector, 0.0)?;
+        let eu = math::any_normal(normal);
+        Some(Self { walk, origin, eu, ev: normal.cross(eu), inner: gauss_legendre(ORDERS[0]) })
+    }
+
+    /// F = ∫ f da from the line through the origin: ∬ f da db = ∮ F db.
+    fn along<const N: usize>(&self, p: DVec3, f: &impl Fn(&Jet2) -> Sums<N>) -> Sums<N> {
+        let (a, foot) = ((p - self.origin).dot(self.eu), p - self.eu * (p - self.origin).dot(self.eu));
+        self.inner.iter().fold([0.0; N], |sum, (x, w)| {
+            let jet = Jet2 { p: foot + self.eu * (0.5 * a * (1.0 + x)), du: self.eu, dv: self.ev, ..Jet2::default() };
             let value = f(&jet);
             std::array::from_fn(|i| sum[i] + 0.5 * a * w * value[i])
         })
-    };
-    // The value along a run, or its size.
-    let round = |rule: &[(f64, f64)], (k, a, b): (usize, f64, f64), size: bool| {
+    }
+
+    /// F db along a run.
+    fn round<const N: usize>(&self, rule: &[(f64, f64)], (k, a, b): Run, f: &impl Fn(&Jet2) -> Sums<N>) -> Sums<N> {
+        self.steps(rule, (k, a, b), f, |x| x)
+    }
+
+    /// The sum of the absolute values of F db along a run.
+    fn size<const N: usize>(&self, rule: &[(f64, f64)], (k, a, b): Run, f: &impl Fn(&Jet2) -> Sums<N>) -> Sums<N> {
+        self.steps(rule, (k, a, b), f, f64::abs)
+    }
+
+    fn steps<const N: usize>(
+        &self,
+        rule: &[(f64, f64)],
+        (k, a, b): Run,
+        f: &impl Fn(&Jet2) -> Sums<N>,
+        each: impl Fn(f64) -> f64,
+    ) -> Sums<N> {
         rule.iter().fold([0.0; N], |sum, (x, w)| {
-            let jet = walk[k].0.jet(0.5 * (a + b) + 0.5 * (b - a) * x);
-            let (value, step) = (if size { along(jet.p, sized) } else { along(jet.p, f) }, 0.5 * (b - a) * w * jet.d1.dot(ev));
-            std::array::from_fn(|i| sum[i] + if size { (step * value[i]).abs() } else { step * value[i] })
+            let jet = self.walk[k].0.jet(0.5 * (a + b) + 0.5 * (b - a) * x);
+            let (value, step) = (self.along(jet.p, f), 0.5 * (b - a) * w * jet.d1.dot(self.ev));
+            std::array::from_fn(|i| sum[i] + each(step * value[i]))
         })
-    };
+    }
+}
+
+/// The integral of N polynomials (up to degree seven in the coordinates) over a flat face, from its boundary by Green's theorem,
+/// with estimated errors: `accuracy` is relative to the sums of their sizes.
+///
+/// The functions get jets with unit derivatives in the plane, their cross product the surface's normal.
+pub fn flat_integral<const N: usize>(
+    surface: &Surface,
+    accuracy: f64,
+    integrand: Integrand<impl Fn(&Jet2) -> Sums<N>, impl Fn(&Jet2) -> Sums<N>>,
+) -> (Sums<N>, Sums<N>) {
+    let loops = boundary(surface);
+    let gaps: Vec<(DVec3, DVec3)> = loops.iter().flat_map(gaps).collect();
+    let walk = loops.concat();
+    let rules = [gauss_legendre(ORDERS[2]), gauss_legendre(ORDERS[3])];
+    let runs = runs(&walk);
+    let Some(face) = FlatFace::new(walk, &runs, &rules[1]) else { return ([0.0; N], [0.0; N]) };
     let scale = runs.iter().fold([0.0; N], |scale: Sums<N>, run| {
-        let size = round(&rules[0], *run, true);
+        let size = face.size(&rules[0], *run, integrand.size);
         std::array::from_fn(|i| scale[i] + size[i])
     });
     let share = accuracy / runs.len() as f64;
@@ -101,20 +139,18 @@ pub fn flat_integral<const N: usize>(
     // A border that is not closed bounds an area that depends on where it is seen from: straight steps close it.
     for (a, b) in gaps {
         for (x, w) in &rules[0] {
-            let (value, step) = (along(a.midpoint(b) + (b - a) * (0.5 * x), f), 0.5 * w * (b - a).dot(ev));
+            let (value, step) = (face.along(a.midpoint(b) + (b - a) * (0.5 * x), integrand.value), 0.5 * w * (b - a).dot(face.ev));
             (0..N).for_each(|i| sum[i] += step * value[i]);
         }
     }
-    let mut open: Vec<((usize, f64, f64), u32)> = runs.iter().rev().map(|run| (*run, 0)).collect();
+    let mut open: Vec<(Run, u32)> = runs.iter().rev().map(|run| (*run, 0)).collect();
     while let Some((run, depth)) = open.pop() {
         job::poll();
-        let (rough, value) = (round(&rules[0], run, false), round(&rules[1], run, false));
+        let (rough, value) = (face.round(&rules[0], run, integrand.value), face.round(&rules[1], run, integrand.value));
         let apart: Sums<N> = std::array::from_fn(|i| (value[i] - rough[i]).abs());
         if depth == MAX_DEPTH || small(&apart, &scale.map(|s| share * s)) {
-            for i in 0..N {
-                sum[i] += value[i];
-                error[i] += apart[i];
-            }
+            add(&mut sum, &value);
+            add(&mut error, &apart);
         } else {
             let middle = 0.5 * (run.1 + run.2);
             open.push(((run.0, middle, run.2), depth + 1));

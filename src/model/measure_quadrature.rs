@@ -26,6 +26,15 @@ const BATCH: usize = 1 << 15;
 /// Sums of N functions.
 pub type Sums<const N: usize> = [f64; N];
 
+/// N functions of the jet of a surface, and what their values are compared with: sizes that no cancelling makes small.
+#[derive(Clone, Copy)]
+pub struct Integrand<'a, F, S> {
+    /// The functions.
+    pub value: &'a F,
+    /// Their sizes, not negative.
+    pub size: &'a S,
+}
+
 /// Low and high of one parameter.
 type Span = (f64, f64);
 
@@ -53,14 +62,14 @@ pub const WHOLE: Rectangle = ((0.0, 1.0), (0.0, 1.0));
 
 /// The integral of N functions of the jet over a rectangle of the unit square of a surface, with estimated errors.
 ///
-/// A cell is done when two orders differ by no more than `accuracy` of the integrals of their sizes (the second functions), shared
+/// A cell is done when two orders differ by no more than `accuracy` of the integrals of their sizes, shared
 /// out by the cells of the first division, once more by their size where these are many; errors are sums of these differences (of the
 /// lower order: on the safe side).
 pub fn integral<const N: usize>(
     surface: &Surface,
     within: Rectangle,
     accuracy: f64,
-    (f, sized): (&impl Fn(&Jet2) -> Sums<N>, &impl Fn(&Jet2) -> Sums<N>),
+    integrand: Integrand<impl Fn(&Jet2) -> Sums<N>, impl Fn(&Jet2) -> Sums<N>>,
 ) -> (Sums<N>, Sums<N>) {
     let ((us, vs), kinks) = (surface.breaks(), surface.kinks());
     // A triangle's lines do not follow the square.
@@ -70,16 +79,16 @@ pub fn integral<const N: usize>(
     let orders = if open.len() > MANY { &ORDERS_OF_MANY[..] } else { &ORDERS[..] };
     let rules: Vec<Vec<(f64, f64)>> = orders.iter().map(|&n| gauss_legendre(n)).collect();
     let share = accuracy / open.len() as f64;
-    let first = products(surface, (&us, &vs), &rules[0], f);
-    let second = products(surface, (&us, &vs), &rules[1], f);
-    let sizes = products(surface, (&us, &vs), &rules[0], sized);
+    let first = products(surface, (&us, &vs), &rules[0], integrand.value);
+    let second = products(surface, (&us, &vs), &rules[1], integrand.value);
+    let sizes = products(surface, (&us, &vs), &rules[0], integrand.size);
     let scale = sizes.iter().fold([0.0; N], |sum, size| std::array::from_fn(|i| sum[i] + size[i]));
     // Of many cells the large ones hold nearly everything: they get a share as large.
     let own = if open.len() > MANY { accuracy } else { 0.0 };
     let allowed: Vec<Sums<N>> = sizes.iter().map(|size| std::array::from_fn(|i| share * scale[i] + own * size[i])).collect();
     let mut known: Vec<Vec<Sums<N>>> = first.into_iter().zip(second).map(|(a, b)| vec![a, b]).collect();
     for rule in &rules[2..] {
-        sharpen(surface, (&us, &vs), rule, f, &mut known, &allowed);
+        sharpen(surface, (&us, &vs), rule, integrand.value, &mut known, &allowed);
     }
     // Where the first division has many cells each of them may still be halved.
     let most = MOST_CELLS.max(2 * open.len());
@@ -92,7 +101,7 @@ pub fn integral<const N: usize>(
         let mut rough = Vec::new();
         for (cell, start, limit) in open {
             job::poll();
-            let (value, apart) = measured(&rules, &start, &limit, |k| product(surface, &cell, &rules[k], f));
+            let (value, apart) = measured(&rules, &start, &limit, |k| product(surface, &cell, &rules[k], integrand.value));
             if small(&apart, &limit) || cell.depth >= MAX_DEPTH {
                 add(&mut sum, &value);
                 add(&mut error, &apart);
@@ -139,7 +148,7 @@ fn measured<const N: usize>(
     (value, apart)
 }
 
-fn add<const N: usize>(sum: &mut Sums<N>, value: &Sums<N>) {
+pub(super) fn add<const N: usize>(sum: &mut Sums<N>, value: &Sums<N>) {
     (0..N).for_each(|i| sum[i] += value[i]);
 }
 

@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 
 use glam::DVec2;
 
-use super::measure_trimmed::Sums;
+use super::measure_quadrature::Sums;
 use crate::base::job;
 use crate::base::math;
 use crate::base::quadrature::{RUNNING, chebyshev};

@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use super::measure_quadrature::{Integrand, Sums, add};
 use super::measure_strips::Strips;
 use crate::base::job;
 use crate::base::quadrature::gauss_legendre;
@@ -19,9 +20,6 @@ const SIZED: [f64; 3] = [0.13, 0.46, 0.89];
 const DEAR: u64 = 3;
 /// A run of a border is halved at most so often.
 const MAX_DEPTH: u32 = 14;
-
-/// Sums of N functions.
-pub(super) type Sums<const N: usize> = [f64; N];
 
 /// A border: the chain that carries it, or a line in (u, v).
 enum Way {
@@ -49,56 +47,80 @@ fn parts(breaks: &[f64], low: f64, high: f64) -> bool {
     breaks.partition_point(|b| *b <= low) < breaks.partition_point(|b| *b < high)
 }
 
-/// The integral of N functions of the jet over a trimmed surface, with estimated errors: `accuracy` is relative to the sums of
-/// their sizes, the second functions.
-///
-/// ∬ f du dv = ∮ F dv with F = ∫ f du from the middle of each loop (round a closed loop any start serves), cut where the
-/// surface is less than analytic.
-pub fn trimmed_integral<const N: usize>(
-    surface: &Surface,
-    accuracy: f64,
-    (f, sized): (&impl Fn(&Jet2) -> Sums<N>, &impl Fn(&Jet2) -> Sums<N>),
-) -> (Sums<N>, Sums<N>) {
-    let middle = |outline: &Vec<DVec2>| {
-        let (low, high) = outline.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| (l.min(p.x), h.max(p.x)));
-        0.5 * (low + high)
-    };
-    let outlines = surface.outlines();
-    let bases: Vec<f64> = outlines.iter().zip(surface.loops()).flat_map(|(o, n)| std::iter::repeat_n(middle(o), n)).collect();
-    let ways: Vec<(f64, Way)> = (0..surface.n_sides())
-        .filter_map(|k| match (surface.side(k), surface.border_line(k)) {
+/// What the integral over a trimmed surface is made from: ∬ f du dv = ∮ F dv with F = ∫ f du from a base of each loop.
+struct Green<'a, const N: usize, F, S> {
+    integrand: Integrand<'a, F, S>,
+    evaluator: Evaluator<'a>,
+    /// Units of work of one evaluation.
+    cost: u64,
+    /// Borders with the u their integrals along u begin at.
+    ways: Vec<(f64, Way)>,
+    /// Where the surface is less than analytic.
+    breaks: (Vec<f64>, Vec<f64>),
+    closed_v: bool,
+    /// The rule along u.
+    across: Vec<(f64, f64)>,
+    strips: Option<Strips<N>>,
+}
+
+impl<'a, const N: usize, F, S> Green<'a, N, F, S>
+where
+    F: Fn(&Jet2) -> Sums<N>,
+    S: Fn(&Jet2) -> Sums<N>,
+{
+    fn new(evaluator: Evaluator<'a>, integrand: Integrand<'a, F, S>) -> Self {
+        let surface = evaluator.surface();
+        let outlines = surface.outlines();
+        // From the middle of each loop; round a closed loop any start serves.
+        let middle = |outline: &Vec<DVec2>| {
+            let (low, high) = outline.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| (l.min(p.x), h.max(p.x)));
+            0.5 * (low + high)
+        };
+        let bases: Vec<f64> = outlines.iter().zip(surface.loops()).flat_map(|(o, n)| std::iter::repeat_n(middle(o), n)).collect();
+        let way = |k: usize| match (surface.side(k), surface.border_line(k)) {
             (_, Some((a, b))) => Some((bases[k], Way::Line(a, b))),
             (Side::Chain { chain, from, to }, None) => Some((bases[k], Way::Chain(k, chain, from, to))),
             _ => None,
-        })
-        .collect();
-    let (rules, across) = (ALONG.map(|pair| pair.map(gauss_legendre)), gauss_legendre(ACROSS));
-    let (breaks_u, breaks_v) = surface.breaks();
-    let closed_v = surface.closed().1;
-    let prepared = surface.prepared();
-    let evaluator = prepared.evaluator();
-    let dear = if surface.is_scattered() { DEAR } else { 0 };
-    let jet = |u, v| {
-        work::spend(dear);
-        evaluator.jet(u, v)
-    };
-    let part = |low: f64, high: f64, v: f64| -> Sums<N> {
+        };
+        let mut made = Self {
+            integrand,
+            evaluator,
+            cost: if surface.is_scattered() { DEAR } else { 0 },
+            ways: (0..surface.n_sides()).filter_map(way).collect(),
+            breaks: surface.breaks(),
+            closed_v: surface.closed().1,
+            across: gauss_legendre(ACROSS),
+            strips: None,
+        };
+        if outlines.iter().flatten().all(|p| (-EPSILON..=1.0 + EPSILON).contains(&p.x)) {
+            made.strips = Strips::new((&made.breaks.0, &made.breaks.1), &made.across, &|u, v| (made.integrand.value)(&made.jet(u, v)));
+        }
+        made
+    }
+
+    fn jet(&self, u: f64, v: f64) -> Jet2 {
+        work::spend(self.cost);
+        self.evaluator.jet(u, v)
+    }
+
+    /// ∫ f du between two places without a break.
+    fn part(&self, low: f64, high: f64, v: f64) -> Sums<N> {
         let mut sum = [0.0; N];
-        for (x, w) in &across {
+        for (x, w) in &self.across {
             job::poll();
             let u = 0.5 * (low + high) + 0.5 * (high - low) * x;
-            let value = f(&jet(u, v));
+            let value = (self.integrand.value)(&self.jet(u, v));
             (0..N).for_each(|i| sum[i] += 0.5 * (high - low) * w * value[i]);
         }
         sum
-    };
-    let inside = outlines.iter().flatten().all(|p| (-EPSILON..=1.0 + EPSILON).contains(&p.x));
-    let strips = if inside { Strips::new((&breaks_u, &breaks_v), &across, &|u, v| f(&jet(u, v))) } else { None };
-    let inner = |base: f64, at: DVec2| -> Sums<N> {
-        if let Some(strips) = &strips {
+    }
+
+    /// F: ∫ f du from a base.
+    fn along_u(&self, base: f64, at: DVec2) -> Sums<N> {
+        if let Some(strips) = &self.strips {
             // The table holds one turn: where a border runs over the seam it is the same a turn away.
-            let turn = if closed_v && !(0.0..=1.0).contains(&at.y) { at.y.floor() } else { 0.0 };
-            return strips.from(strips.nearest(base), at - DVec2::new(0.0, turn), |low, high| part(low, high, at.y));
+            let turn = if self.closed_v && !(0.0..=1.0).contains(&at.y) { at.y.floor() } else { 0.0 };
+            return strips.from(strips.nearest(base), at - DVec2::new(0.0, turn), |low, high| self.part(low, high, at.y));
         }
         let mut sum = [0.0; N];
         let (first, last) = (base.min(at.x), base.max(at.x));
@@ -107,82 +129,102 @@ pub fn trimmed_integral<const N: usize>(
         // Breaks repeat where the surface closes and a border runs over its seam.
         let whole = (first.floor() as i64..=last.ceil() as i64).flat_map(|n| {
             let n = n as f64;
-            breaks_u.iter().map(move |b| b + n).chain([n])
+            self.breaks.0.iter().map(move |b| b + n).chain([n])
         });
         let mut stops: Vec<f64> = whole.filter(|u| *u > first && *u < last).collect();
         stops.sort_by(f64::total_cmp);
         stops.push(last);
         for high in stops {
-            let own = part(low, high, at.y);
+            let own = self.part(low, high, at.y);
             (0..N).for_each(|i| sum[i] += sign * own[i]);
             low = high;
         }
         sum
-    };
-    let run = |run: &Run, rule: &[(f64, f64)], wanted: bool| -> Met<N> {
+    }
+
+    /// The runs of all borders between their stops.
+    fn runs(&self) -> Vec<Run> {
+        let mut runs: Vec<Run> = Vec::new();
+        for (border, (_, way)) in self.ways.iter().enumerate() {
+            let stops = way.stops(&self.breaks.1, self.closed_v);
+            runs.extend(stops.windows(2).map(|w| Run { border, t: (w[0], w[1]), depth: 0 }));
+        }
+        runs.reverse();
+        runs
+    }
+
+    /// F dv along a run by a rule, with its size if that is wanted.
+    fn along(&self, run: &Run, rule: &[(f64, f64)], wanted: bool) -> Met<N> {
         let (mut sum, mut size) = ([0.0; N], [0.0; N]);
         let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         for (x, w) in rule {
             let half = 0.5 * (run.t.1 - run.t.0);
             let t = 0.5 * (run.t.0 + run.t.1) + half * x;
-            let (base, way) = (ways[run.border].0, &ways[run.border].1);
-            let (at, dv) = way.at(evaluator, &jet, t);
+            let (base, way) = (self.ways[run.border].0, &self.ways[run.border].1);
+            let (at, dv) = way.at(self.evaluator, &|u, v| self.jet(u, v), t);
             (low, high) = (low.min(at), high.max(at));
             if dv == 0.0 {
                 continue;
             }
-            for (i, value) in inner(base, at).into_iter().enumerate() {
+            for (i, value) in self.along_u(base, at).into_iter().enumerate() {
                 sum[i] += half * w * dv * value;
             }
             // Round a closed surface what is added up may come to nothing: its size is that of what is added.
             for x in SIZED.iter().filter(|_| wanted) {
-                let value = sized(&jet(base + (at.x - base) * x, at.y));
+                let value = (self.integrand.size)(&self.jet(base + (at.x - base) * x, at.y));
                 (0..N).for_each(|i| size[i] += (half * w * dv * (at.x - base) * value[i]).abs() / SIZED.len() as f64);
             }
         }
         Met { sum, size, within: (low, high) }
-    };
-    let mut open: Vec<Run> = Vec::new();
-    for (border, (_, way)) in ways.iter().enumerate() {
-        let stops = way.stops(&breaks_v, closed_v);
-        open.extend(stops.windows(2).map(|w| Run { border, t: (w[0], w[1]), depth: 0 }));
     }
-    open.reverse();
-    // Where nothing breaks between the first places few points tell as much as many.
-    let even = |(low, high): (DVec2, DVec2)| {
+
+    /// Whether no break lies between the places of a run: few points then tell as much as many.
+    fn is_even(&self, (low, high): (DVec2, DVec2)) -> bool {
         let alone = |breaks: &[f64], low: f64, high: f64| breaks.is_empty() || low >= 0.0 && high <= 1.0 && !parts(breaks, low, high);
-        alone(&breaks_u, low.x, high.x) && alone(&breaks_v, low.y, high.y)
-    };
-    let rough = |r: &Run, wanted: bool| run(r, &rules[0][0], wanted);
-    let (mut scale, mut first) = ([0.0; N], Vec::with_capacity(open.len()));
-    for met in open.iter().map(|r| rough(r, true)) {
+        alone(&self.breaks.0, low.x, high.x) && alone(&self.breaks.1, low.y, high.y)
+    }
+}
+
+/// The integral of N functions of the jet over a trimmed surface, with estimated errors: `accuracy` is relative to the sums of
+/// their sizes.
+///
+/// By Green's theorem from its borders, cut where the surface is less than analytic and halved until two rules agree.
+pub fn trimmed_integral<const N: usize>(
+    surface: &Surface,
+    accuracy: f64,
+    integrand: Integrand<impl Fn(&Jet2) -> Sums<N>, impl Fn(&Jet2) -> Sums<N>>,
+) -> (Sums<N>, Sums<N>) {
+    let prepared = surface.prepared();
+    let green = Green::new(prepared.evaluator(), integrand);
+    let rules = ALONG.map(|pair| pair.map(gauss_legendre));
+    let runs = green.runs();
+    let (mut scale, mut first) = ([0.0; N], Vec::with_capacity(runs.len()));
+    for met in runs.iter().map(|run| green.along(run, &rules[0][0], true)) {
         (0..N).for_each(|i| scale[i] += met.size[i]);
         first.push(met);
     }
-    let share = accuracy / open.len().max(1) as f64;
+    let share = accuracy / runs.len().max(1) as f64;
     let apart = |a: &Sums<N>, b: &Sums<N>| -> Sums<N> { std::array::from_fn(|i| (a[i] - b[i]).abs()) };
     let settled = |apart: &Sums<N>| (0..N).all(|i| apart[i] <= share * scale[i]);
-    let mut open: Vec<(Run, Met<N>)> = open.into_iter().zip(first).collect();
+    let mut open: Vec<(Run, Met<N>)> = runs.into_iter().zip(first).collect();
     let (mut sum, mut error) = ([0.0; N], [0.0; N]);
     while let Some((next, met)) = open.pop() {
         job::poll();
-        let few = even(met.within).then(|| {
-            let value = run(&next, &rules[0][1], false).sum;
+        let few = green.is_even(met.within).then(|| {
+            let value = green.along(&next, &rules[0][1], false).sum;
             (value, apart(&value, &met.sum))
         });
         let (value, off) = few.filter(|(_, off)| settled(off)).unwrap_or_else(|| {
-            let value = run(&next, &rules[1][1], false).sum;
-            (value, apart(&value, &run(&next, &rules[1][0], false).sum))
+            let value = green.along(&next, &rules[1][1], false).sum;
+            (value, apart(&value, &green.along(&next, &rules[1][0], false).sum))
         });
         if next.depth == MAX_DEPTH || settled(&off) {
-            for i in 0..N {
-                sum[i] += value[i];
-                error[i] += off[i];
-            }
+            add(&mut sum, &value);
+            add(&mut error, &off);
         } else {
             let middle = 0.5 * (next.t.0 + next.t.1);
             let halves = [(middle, next.t.1), (next.t.0, middle)].map(|t| Run { t, depth: next.depth + 1, ..next });
-            open.extend(halves.map(|half| (half, rough(&half, false))));
+            open.extend(halves.map(|half| (half, green.along(&half, &rules[0][0], false))));
         }
     }
     (sum, error)

@@ -75,7 +75,7 @@ impl Mesh {
         if self.triangles.is_empty() && self.quads.is_empty() {
             return false;
         }
-        // Each way adds or takes away a number drawn from the nodes: something is left over wherever an edge is used once only.
+        // Each direction adds or subtracts a pseudo-random number drawn from the nodes: the sum is not zero where an edge is used once only.
         let mut left_over = 0_u64;
         each_side(self, |a, b| {
             let drawn = drawn(a.min(b), a.max(b));
@@ -96,7 +96,7 @@ impl Mesh {
     }
 }
 
-/// A number for an edge that no other edges make up by chance (the finaliser of SplitMix [Steele, Lea & Flood 2014]).
+/// A pseudo-random number for an edge: sums of others equal it by chance only (the finaliser of SplitMix [Steele, Lea & Flood 2014]).
 pub fn drawn(low: u32, high: u32) -> u64 {
     let mut x = (u64::from(high) << 32 | u64::from(low)).wrapping_add(0x9e37_79b9_7f4a_7c15);
     x = (x ^ x >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);

@@ -8,6 +8,7 @@
 use std::collections::BTreeMap;
 
 use crate::base::job;
+use crate::mesh::data::edge_uses::drawn;
 use crate::mesh::request::methods::Elements;
 use crate::mesh::verify::defect::Defect;
 
@@ -53,14 +54,6 @@ impl EdgeUses {
             self.inside += 1;
         }
     }
-}
-
-/// A pseudo-random number for an edge: sums of others equal it by chance only (the finaliser of SplitMix [Steele, Lea & Flood 2014]).
-fn drawn(low: u32, high: u32) -> u64 {
-    let mut x = (u64::from(high) << 32 | u64::from(low)).wrapping_add(0x9e37_79b9_7f4a_7c15);
-    x = (x ^ x >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    x = (x ^ x >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-    x ^ x >> 31
 }
 
 impl Claim<'_> {
