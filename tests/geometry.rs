@@ -656,7 +656,7 @@ mod mistakes {
             "E403",
             &["points 3 and 0", "leave the last point out"],
         );
-        check(build::arc_through(at(0.0, 0.0), at(2.0, 0.0), at(1.0, 0.0), NONE), "E404", &["three points of one line", "line((0"]);
+        check(build::arc_through(at(0.0, 0.0), at(2.0, 0.0), at(1.0, 0.0), NONE), "E404", &["three collinear points", "line((0"]);
         for rho in [0.0, 1.0, -0.2, f64::NAN] {
             check(build::conic(three[0], three[1], three[2], rho, Kind::Conic, NONE), "E405", &["rho"]);
         }

@@ -48,6 +48,8 @@ pub const NUDGE: f64 = 1e-6;
 pub const NEWTON_STEP: f64 = 1e-8;
 /// Two sums of areas in (u, v) that differ by no more than this share are of one region.
 pub const RELATIVE_AREA: f64 = 1e-7;
+/// Rounding of a squared cosine, with much to spare.
+pub const COSINE_ROUNDING: f64 = 1e-9;
 /// Stated relative error of areas, volumes and moments.
 pub const MEASURE_ACCURACY: f64 = 1e-10;
 /// Relative errors of integrals up to which what does not fall from one size of cells to the next is rounding.

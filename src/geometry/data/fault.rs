@@ -83,7 +83,7 @@ pub enum CurveFault {
         /// The model's tolerance, model units; 0 when they are exactly equal.
         tolerance: f64,
     },
-    /// E404: no circle goes through three points on a line.
+    /// E404: no circle passes through three collinear points.
     Collinear {
         /// The curve.
         of: Origin,

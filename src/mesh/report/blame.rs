@@ -7,6 +7,7 @@ use glam::DVec3;
 
 use crate::base::math::{self, angle_between};
 use crate::base::text::real;
+use crate::base::tolerance::COSINE_ROUNDING;
 use crate::base::{job, par};
 use crate::mesh::border::layout::Face;
 use crate::mesh::chart::face_input::FaceInput;
@@ -21,8 +22,6 @@ use crate::mesh::size::sizing::Sizing;
 
 /// Angles from here on need no word, radians: 15°.
 const SMALL: f64 = 0.2618;
-/// What rounding may take from a squared cosine, with much to spare.
-const COSINE_ROOM: f64 = 1e-9;
 /// A corner of the border this much wider than the least angle is not its cause.
 const ITSELF: f64 = 1.5;
 /// Size that makes the angle over a short side 27°, over that side.
@@ -68,7 +67,7 @@ fn of_face(
     // Each corner first, with the nodes before and after it.
     let halves = quads.iter().flat_map(|[a, b, c, d]| [[*a, *b, *d], [*b, *c, *a], [*c, *d, *b], [*d, *a, *c]]);
     let own = triangles.iter().flat_map(|[a, b, c]| [[*a, *b, *c], [*b, *c, *a], [*c, *a, *b]]);
-    let squared_cosine = math::cos(MAP_CHOICE.min_map_angle) * math::cos(MAP_CHOICE.min_map_angle) - COSINE_ROOM;
+    let squared_cosine = math::cos(MAP_CHOICE.min_map_angle) * math::cos(MAP_CHOICE.min_map_angle) - COSINE_ROUNDING;
     // Only few corners are as sharp: the others are left out before their angles are computed.
     let all = own.chain(halves).filter(|t| has_cosine(mesh, *t, squared_cosine)).map(|t| (angle(mesh, t), t));
     let all: Vec<(f64, [u32; 3])> = job::looking(all).collect();
