@@ -38,7 +38,7 @@ pub mod stages;
 pub mod staging;
 pub mod starter;
 pub mod store;
-mod sweep;
 pub mod task;
+mod temporary_files;
 pub mod textmate;
 pub mod variants;

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use super::sweep::{sweep, temporary_name};
+use super::temporary_files::{remove_leftovers, temporary_name};
 use crate::base::job;
 
 /// Bytes gathered before the system is asked to write.
@@ -74,7 +74,7 @@ impl Staging {
         let folder = place.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         fs::create_dir_all(folder)?;
         if self.0.swept.lock().unwrap_or_else(PoisonError::into_inner).insert(folder.to_owned()) {
-            sweep(folder);
+            remove_leftovers(folder);
         }
         let temporary = self.announce(place, folder);
         let written = fill_file(&temporary, fill);

@@ -1,6 +1,6 @@
 //! The reserved words: what each is, how it is written, and what it means. Scanner, messages and reference read this table.
 //!
-//! The code below this floor that does what a declaration asks for:
+//! The code that does what a word asks for:
 //!
 //! | word | code |
 //! |---|---|
@@ -8,8 +8,12 @@
 //! | `snap` | [`network::snap::snap`](crate::network::snap::snap) |
 //! | `surface` | [`Model::build`](crate::model::Model::build) |
 //! | `shell` | [`Model::shell`](crate::model::Model::shell) |
-//! | `mesh`, `on`, `in`, `near`, `group` | [`mesh::MeshLayouts::build`](crate::mesh::MeshLayouts::build) |
-//! | `export` | [`endings::ending_for`](crate::io::formats::endings::ending_for), [`choice::format_for`](crate::io::formats::choice::format_for) |
+//! | `mesh`, `group` | [`mesh::MeshLayouts::build`](crate::mesh::MeshLayouts::build) |
+//! | `on` | [`segment_rules`](crate::mesh::size::segment_rules) for borders, [`face_settings`](crate::mesh::size::face_settings) for faces |
+//! | `near`, `in` (of a mesh) | [`SizeRequests::new`](crate::mesh::request::size_requests::SizeRequests::new), [`sources`](crate::mesh::request::sources) |
+//! | `export` | [`endings::ending_for`](crate::io::formats::endings::ending_for), [`choice::format_for`](crate::io::formats::choice::format_for); written by `session/export.rs` |
+//! | `check`, `report` | `lang/declare/outputs.rs`; a failed check writes nothing: `session/run.rs` |
+//! | `import`, `param`, `use` | `lang/declare/imports.rs`, `lang/declare/params.rs`, `lang/eval/load.rs` |
 //! | `picture` | [`draw::Picture::new`](crate::draw::Picture::new) |
 //! | `tolerance` | [`Tolerance::new`](crate::base::tolerance::Tolerance::new) |
 

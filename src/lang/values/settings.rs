@@ -74,7 +74,7 @@ const fn of_mesh<const N: usize>(declared: &[Declared]) -> [Setting; N] {
 }
 
 /// `shell s of … { … }`: `snap` is decided by [`Model::reach`](crate::model::Model::reach), the sides of faces by
-/// [`Model::shell`](crate::model::Model::shell).
+/// [`Model::shell`](crate::model::Model::shell), what `imprint` cuts by [`Model::imprint`](crate::model::Model::imprint).
 pub const SHELL: &[Setting] = &[
     Setting {
         key: "snap",

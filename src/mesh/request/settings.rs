@@ -189,17 +189,24 @@ mesh_settings! {
         /// Largest distance between mesh and surface; like all lengths of a mesh it may be a percentage of the diagonal of the box
         /// around what is meshed: `0.01%`.
         chord_error: f64, Takes::Size, POSITIVE, "",
-            ["mesh::deviation::curve::least_steps", "mesh::divide::verdict::check", "mesh::deviation::edge_length::wanted"];
+            [
+                "mesh::deviation::curve::least_steps", "mesh::divide::verdict::check", "mesh::deviation::edge_length::wanted",
+                "mesh::tri::triangle_fit"
+            ];
         /// Largest turn of the normal across an element.
         angle_error: f64, Takes::Angle, POSITIVE, "",
-            ["mesh::deviation::curve::least_steps", "mesh::divide::verdict::check", "mesh::deviation::edge_length::wanted"];
+            [
+                "mesh::deviation::curve::least_steps", "mesh::divide::verdict::check", "mesh::deviation::edge_length::wanted",
+                "mesh::tri::triangle_fit"
+            ];
         /// Smallest edge length, also within `chord_error` and `angle_error`. A written one that prevents these, or is above a written
         /// size, is an error. Written counts and short edges of the model may go below it.
         min_size: f64, Takes::Size, POSITIVE, "a hundredth of the size; written sizes and limits may go below it",
             ["mesh::request::size_requests::SizeRequests::new"];
         /// Ratio of neighbouring sizes on free faces and their borders: away from a place with small steps the size grows by
         /// `growth - 1` of the distance. Rows of mapped faces are even and not graded.
-        growth: f64, Takes::Ratio, ABOVE_ONE, "1.3" => GROWTH, ["mesh::request::plan::Plan::slope", "mesh::request::sources::Sources::new"];
+        growth: f64, Takes::Ratio, ABOVE_ONE, "1.3" => GROWTH,
+            ["mesh::request::sources::Source::at", "mesh::size::spacing_solver", "mesh::tri::longest"];
         /// Largest number of smoothing rounds on free faces; a node that no longer moves is done earlier. 0 does not smooth.
         smooth: u32, Takes::Count, ANY,
             "5; 4 within `chord_error` or `angle_error`; 8 for quads and where lengths grow from short pieces; 30 with `quadtree`",
@@ -211,7 +218,8 @@ mesh_settings! {
         /// How faces are meshed: `auto` (`mapped` where it fits and its elements are well shaped, else `delaunay`), `mapped`,
         /// `delaunay`, `quadtree` (right-angled triangles in rows, finer where a border asks for it), `isoline` (cells between lines of
         /// constant u and v, as large as `chord_error` and `size` allow) or `display` (few and long triangles within `chord_error`).
-        method: Method, Takes::Word(Method::WORDS), ANY, "auto" => Method::Auto, ["mesh::size::face_settings::apply_rules", "mesh::size::choose::choose"];
+        method: Method, Takes::Word(Method::WORDS), ANY, "auto" => Method::Auto,
+            ["mesh::size::face_settings::apply_rules", "mesh::size::choose::choose"];
         /// Neighbouring faces share nodes.
         conforming: bool, Takes::Flag, ANY, "true" => true, ["mesh::pipeline::build::build"];
         /// Faces that touch without a shared border share nodes there: edges that lie on a face, and the curves in which faces cross,

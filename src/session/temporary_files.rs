@@ -14,7 +14,7 @@ pub fn temporary_name(name: &str, number: u64) -> String {
 
 /// Removes what runs that were killed left in a folder: files with a [`temporary_name`] whose process is gone, or that are
 /// a week old. Nothing else is touched, and what cannot be removed stays.
-pub fn sweep(folder: &Path) {
+pub fn remove_leftovers(folder: &Path) {
     let Ok(entries) = fs::read_dir(folder) else { return };
     for entry in entries.flatten() {
         let Some(process) = process_of(&entry.file_name().to_string_lossy()) else { continue };
@@ -59,13 +59,13 @@ mod tests {
         for name in others.into_iter().chain([gone, alive.as_str(), own.as_str()]) {
             fs::write(folder.join(name), "x").unwrap();
         }
-        sweep(&folder);
+        remove_leftovers(&folder);
         let stands = |name: &str| folder.join(name).exists();
         assert!(others.into_iter().all(stands) && stands(".folder.999999999-0.tmp"));
         assert!(stands(&alive) && stands(&own));
         assert_eq!(stands(gone), !Path::new("/proc/self").exists());
         File::options().write(true).open(folder.join(&alive)).unwrap().set_modified(SystemTime::now() - 2 * OLD).unwrap();
-        sweep(&folder);
+        remove_leftovers(&folder);
         assert!(!stands(&alive), "a week old");
         fs::remove_dir_all(&folder).unwrap();
     }
