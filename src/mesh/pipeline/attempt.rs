@@ -241,7 +241,7 @@ impl Attempt<'_> {
         }
         self.layout.faces.iter_mut().zip(&predicted).for_each(|(face, found)| face.foreseen = found.map(|found| found.angle));
         let face_input = FaceInput { input, layout: &*self.layout, nodes: &nodes, points: &border, wanted: &self.sizing.wanted };
-        let blames = blame::of_faces(&face_input, (&self.sizing, &predicted), &prepared, &mesh);
+        let blames = blame::of_faces(&face_input, &self.sizing, &predicted, &prepared, &mesh);
         let sharp: Vec<Remark> = blames.iter().filter_map(|seen| seen.sharp.clone()).collect();
         let mut sizing = std::mem::take(&mut self.sizing);
         sizing.sharp = sharp.into_iter().reduce(Remark::sharper);

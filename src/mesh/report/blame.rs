@@ -44,11 +44,11 @@ pub struct Seen {
 }
 
 /// The least angle of each face; nothing where triangles are long by their method.
-pub fn of_faces(made: &FaceInput, (sizing, foreseen): (&Sizing, &[Option<MapQuality>]), prepared: &[FaceMesh], mesh: &Mesh) -> Vec<Seen> {
+pub fn of_faces(made: &FaceInput, sizing: &Sizing, foreseen: &[Option<MapQuality>], prepared: &[FaceMesh], mesh: &Mesh) -> Vec<Seen> {
     let ranges = element_ranges(prepared);
     par::map(prepared.len(), |f| {
         let elements = (&mesh.triangles[ranges[f].0.clone()], &mesh.quads[ranges[f].1.clone()]);
-        of_face(made, (sizing, foreseen[f].as_ref()), &made.layout.faces[f], elements, mesh).unwrap_or_default()
+        of_face(made, sizing, foreseen[f].as_ref(), &made.layout.faces[f], elements, mesh).unwrap_or_default()
     })
 }
 
@@ -56,7 +56,8 @@ type Elements<'a> = (&'a [[u32; 3]], &'a [[u32; 4]]);
 
 fn of_face(
     made: &FaceInput,
-    (sizing, foreseen): (&Sizing, Option<&MapQuality>),
+    sizing: &Sizing,
+    foreseen: Option<&MapQuality>,
     face: &Face,
     (triangles, quads): Elements,
     mesh: &Mesh,
@@ -64,13 +65,14 @@ fn of_face(
     if face.free && face.method.is_coarse() {
         return None;
     }
-    // Each corner first, with the nodes before and after it.
-    let halves = quads.iter().flat_map(|[a, b, c, d]| [[*a, *b, *d], [*b, *c, *a], [*c, *d, *b], [*d, *a, *c]]);
-    let own = triangles.iter().flat_map(|[a, b, c]| [[*a, *b, *c], [*b, *c, *a], [*c, *a, *b]]);
     let squared_cosine = math::cos(MAP_CHOICE.min_map_angle) * math::cos(MAP_CHOICE.min_map_angle) - COSINE_ROUNDING;
-    // Only few corners are as sharp: the others are left out before their angles are computed.
-    let all = own.chain(halves).filter(|t| has_cosine(mesh, *t, squared_cosine)).map(|t| (angle(mesh, t), t));
-    let all: Vec<(f64, [u32; 3])> = job::looking(all).collect();
+    // Only few elements have a corner as sharp: the others are left out before angles are computed. Each corner comes first, with the
+    // nodes after and before it.
+    let halves = job::looking(quads).filter(|q| may_be_sharp(mesh, **q, squared_cosine));
+    let halves = halves.flat_map(|[a, b, c, d]| [[*a, *b, *d], [*b, *c, *a], [*c, *d, *b], [*d, *a, *c]]);
+    let own = job::looking(triangles).filter(|t| may_be_sharp(mesh, **t, squared_cosine));
+    let own = own.flat_map(|[a, b, c]| [[*a, *b, *c], [*b, *c, *a], [*c, *a, *b]]);
+    let all: Vec<(f64, [u32; 3])> = own.chain(halves).map(|t| (angle(mesh, t), t)).collect();
     let least = all.iter().copied().min_by(|a, b| a.0.total_cmp(&b.0))?;
     if least.0 >= MAP_CHOICE.min_map_angle {
         return None;
@@ -100,12 +102,16 @@ fn angle(mesh: &Mesh, c: [u32; 3]) -> f64 {
     if a == b || a == d { 0.0 } else { angle_between(b - a, d - a) }
 }
 
-/// Whether a corner is sharp enough for its cosine to be positive with at least this square.
-fn has_cosine(mesh: &Mesh, c: [u32; 3], square: f64) -> bool {
-    let [p, q, r] = c.map(|n| mesh.nodes[n as usize]);
-    let (a, b) = (q - p, r - p);
-    let (along, lengths) = (a.dot(b), a.length_squared() * b.length_squared());
-    lengths == 0.0 || along > 0.0 && along * along >= square * lengths
+/// Whether an element has a corner whose cosine is positive with at least this square, or two nodes at one place.
+fn may_be_sharp<const N: usize>(mesh: &Mesh, corners: [u32; N], square: f64) -> bool {
+    let p = corners.map(|n| mesh.nodes[n as usize]);
+    let sides: [DVec3; N] = std::array::from_fn(|k| p[(k + 1) % N] - p[k]);
+    let squares = sides.map(DVec3::length_squared);
+    (0..N).any(|k| {
+        let before = (k + N - 1) % N;
+        let (along, lengths) = (-sides[before].dot(sides[k]), squares[before] * squares[k]);
+        lengths == 0.0 || along > 0.0 && along * along >= square * lengths
+    })
 }
 
 /// A number with three digits that count.
