@@ -147,7 +147,8 @@ impl Refusal<'_> {
         }
     }
 
-    /// `export(fine, "x.stl")`, `export fine, "x.stl"`, `export "x.stl" of fine`, `export fine as "x.stl"`, `export fine to x.stl`.
+    /// `export(fine, "x.stl")`, `export fine, "x.stl"`, `export "x.stl" of fine`, `export "x.stl" { mesh: fine }`, `export fine as "x.stl"`,
+    /// `export fine to x.stl`.
     pub(crate) fn called_output(&self) -> Option<Meant> {
         if !matches!(self.tokens.kinds[self.base], Kind::Export | Kind::Picture) {
             return None;
@@ -161,12 +162,19 @@ impl Refusal<'_> {
         };
         let things = if path == first {
             let skip = usize::from(matches!(self.kind(path + 1), Some(Kind::Comma | Kind::Of | Kind::In)));
-            self.text(path + 1 + skip, end)
+            self.in_braces(path + 1, end).unwrap_or_else(|| self.text(path + 1 + skip, end))
         } else {
             let as_word = path > first && self.tokens.kinds[path - 1] == Kind::As;
             self.text(first, path - usize::from(as_word)).trim_end().trim_end_matches(',').trim_end()
         };
         self.replaced("the file follows `to`", format!("{} {things} to {}", self.text(self.base, self.base + 1), self.text(path, path + 1)))
+    }
+
+    /// `fine` of `{ fine }` and of `{ mesh: fine }`, where these are the tokens from `first` to `end`.
+    fn in_braces(&self, first: usize, end: usize) -> Option<&str> {
+        let whole = self.kind(first) == Some(Kind::OpenCurly) && self.closer(first) == Some(end - 1);
+        let start = if self.kind(first + 2) == Some(Kind::Colon) { first + 3 } else { first + 1 };
+        (whole && start + 1 < end).then(|| self.text(start, end - 1))
     }
 
     /// Settings without braces, behind them, or behind a comma.
