@@ -79,7 +79,8 @@ pub fn points(points: &[DVec2], edges: &[[u32; 2]]) -> Result<Triangles, PointsF
     cdt.vertices().for_each(|vertex| vertices[vertex.data().index as usize] = Some(vertex.fix()));
     for [a, b] in job::looking(edges.iter().copied()) {
         if let (Some(from), Some(to)) = (vertices[a as usize], vertices[b as usize])
-            && cdt.try_add_constraint(from, to).is_empty()
+            // Nothing where it crosses another edge, several where points lie on it.
+            && cdt.try_add_constraint(from, to).len() != 1
         {
             return Err(PointsFault::Crosses(a, b));
         }
