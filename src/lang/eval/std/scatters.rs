@@ -2,7 +2,7 @@
 
 use crate::builtins;
 use crate::lang::eval::std::curves::places;
-use crate::lang::eval::std::surfaces::finished;
+use crate::lang::eval::std::surfaces::reported;
 use crate::lang::values::conversions::{Direction, Point};
 use crate::surface::{self, Surface};
 
@@ -30,6 +30,6 @@ builtins! {
         cx.seen(points.iter().copied());
         let tolerance = cx.tolerance()?;
         let (surface, notes) = surface::scatter(&points, along.map(|d| d.0), cx.origin(), &tolerance)?;
-        finished(cx, surface, &notes)
+        reported(cx, surface, &notes)
     };
 }
