@@ -95,7 +95,7 @@ impl Describe for ScatterFault {
                     say.length(*tolerance)
                 );
                 label(Report::new(message), "a place has one height")
-                    .help("choose `along:` so that no place has two points, or divide a closed cloud into parts for which that is possible")
+                    .help("choose `along:` so that no place has two points, or divide points of a closed surface into parts for which that is possible")
             }
             Self::Steep { surface, a, b, steep } => {
                 let ((a, b), which) = (say.pair(*a, *b), say.quoted(*surface, "this surface"));

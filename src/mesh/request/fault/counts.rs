@@ -117,7 +117,7 @@ impl Describe for CountFault {
                 .edit(Subject::Entity(count.1), Edit::Put(links.to_string())),
             Self::Odd { count, surface, at } => {
                 let mut report = Report::new(format!(
-                    "`elements: quads` is impossible here: an odd number of steps at {}",
+                    "`elements: quads` is impossible here: an odd number of elements along the border at {}",
                     say.point(*at)
                 ));
                 if count.1.is_some() {
@@ -127,7 +127,7 @@ impl Describe for CountFault {
                         .help(format!("count: {even}"))
                         .edit(Subject::Entity(count.1), Edit::Put(even));
                 }
-                report.at(*surface, "is meshed freely, so its border needs an even number of steps in all")
+                report.at(*surface, "is meshed freely, so its border needs an even number of elements in all")
             }
         }
     }
