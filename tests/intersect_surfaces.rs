@@ -129,10 +129,10 @@ fn a_curve_on_a_surface_is_one_stretch() {
     let circle = |normal: DVec3| Chain::of_curve(&build::circle(DVec3::ZERO, 1.0, normal, Origin::NONE).unwrap());
     for normal in [DVec3::Z, DVec3::X, DVec3::new(1.0, 2.0, 3.0).normalize()] {
         let found = with_curve::with_curve(&circle(normal), from_ref(&ball), &tolerance()).unwrap();
-        assert!(matches!(found.as_slice(), [m] if m.f == 0.0 && m.shared_to == Some(1.0)), "{normal}: {found:?}");
+        assert!(matches!(found.as_slice(), [m] if m.f == 0.0 && m.overlap_end == Some(1.0)), "{normal}: {found:?}");
     }
     let found = with_curve::with_curve(&circle(DVec3::Z), &[flat], &tolerance()).unwrap();
-    assert!(matches!(found.as_slice(), [m] if m.shared_to == Some(1.0)), "{found:?}");
+    assert!(matches!(found.as_slice(), [m] if m.overlap_end == Some(1.0)), "{found:?}");
 }
 
 /// A tube about an axis through the origin.

@@ -1,4 +1,4 @@
-//! IsolineCells between lines of constant u and v: the marks of [Jeong & Park 2000] against a reference, and against the winding.
+//! Cells between lines of constant u and v: the marks of [Jeong & Park 2000] against a reference, and against the winding.
 
 use std::f64::consts::PI;
 

@@ -94,7 +94,7 @@ impl Case {
         layout
     }
 
-    /// Faces, stretches, uses of stretches, poles.
+    /// Faces, segments, uses of segments, poles.
     fn counts(&self) -> [usize; 4] {
         let layout = self.layout();
         layout.check(&self.input()).unwrap();
@@ -122,7 +122,7 @@ fn layouts_of_closed_surfaces_and_shared_borders_are_sound() {
     assert_eq!(Case::new(plate.clone()).counts()[0], plate.len(), "a plate");
     plate.extend(cut(&square(DVec3::ZERO), &loops[..1], true));
     let [faces, segments, uses, _] = Case::new(plate).counts();
-    assert!(faces == 2 && uses == segments + 1, "{faces} faces, {segments} stretches, {uses} uses");
+    assert!(faces == 2 && uses == segments + 1, "{faces} faces, {segments} segments, {uses} uses");
     // A belt of a ball between two rings, over its seam.
     let belt = cut(&ball(), &[vec![ring(p(0., 0., -2.), 21_f64.sqrt(), DVec3::Z)], vec![ring(p(0., 0., 3.), 4.0, -DVec3::Z)]], true);
     assert_eq!(Case::new(belt).counts()[0], 1, "a belt");
@@ -156,16 +156,16 @@ fn is_told(what: &str, damage: impl FnOnce(&mut Layout)) {
     assert!(told.contains(what), "{told}");
 }
 
-/// A track of several stretches.
+/// A track of several segments.
 fn long(layout: &Layout) -> usize {
     layout.pieces.of_track.iter().position(|uses| uses.len() > 1).unwrap()
 }
 
 #[test]
-fn each_condition_on_tracks_and_stretches_is_seen_to_fail() {
+fn each_condition_on_tracks_and_segments_is_seen_to_fail() {
     is_told("tracks differ in length", |l| _ = l.pieces.starts.pop());
     is_told("tracks differ in length", |l| _ = l.pieces.of_track.pop());
-    is_told("runs along stretch 99", |l| l.pieces.of_track[0][0].segment = 99);
+    is_told("runs along segment 99", |l| l.pieces.of_track[0][0].segment = 99);
     is_told("do not follow each other", |l| l.pieces.of_track[long(&sample().layout())].swap(0, 1));
     is_told("do not follow each other", |l| _ = l.pieces.of_track[long(&sample().layout())].pop());
     is_told("do not follow each other", |l| l.pieces.of_track[long(&sample().layout())][0].against ^= true);
@@ -178,7 +178,7 @@ fn each_condition_on_tracks_and_stretches_is_seen_to_fail() {
     is_told("does not run along it", |l| l.pieces.segments[0].s.1 *= 0.5);
     is_told("does not run along it", |l| l.pieces.segments[0].track = 99);
     is_told("a junction is nowhere", |l| l.pieces.junctions[0].x = f64::NAN);
-    // A track that is there twice, with a stretch of its own each time.
+    // A track that is there twice, with a segment of its own each time.
     is_told("are one", |l| {
         let track = (0..l.parts.len()).find(|t| l.pieces.of_track[*t].len() == 1).unwrap();
         let mut used = l.pieces.of_track[track][0];
@@ -218,9 +218,9 @@ fn each_condition_on_lists_is_seen_to_fail() {
 fn each_condition_on_faces_is_seen_to_fail() {
     is_told("is not what its patch says", |l| l.faces[0].surface = SurfaceId::at(1));
     is_told("is not what its patch says", |l| _ = l.faces[1].sides.pop());
-    is_told("has neither stretches nor a pole", |l| l.faces[1].sides[0].uses.clear());
-    is_told("has neither stretches nor a pole", |l| l.faces[0].sides.iter_mut().for_each(|side| side.pole = None));
-    is_told("runs along a stretch that is not there", |l| l.faces[1].sides[0].uses[0].segment = 99);
+    is_told("has neither segments nor a pole", |l| l.faces[1].sides[0].uses.clear());
+    is_told("has neither segments nor a pole", |l| l.faces[0].sides.iter_mut().for_each(|side| side.pole = None));
+    is_told("runs along a segment that is not there", |l| l.faces[1].sides[0].uses[0].segment = 99);
     is_told("is broken", |l| l.faces[1].sides[0].length += 1.0);
     is_told("is broken", |l| l.faces[1].sides.iter_mut().find(|side| side.uses.len() > 1).unwrap().uses.swap(0, 1));
     is_told("does not close", |l| l.faces[1].sides.swap(0, 2));

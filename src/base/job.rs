@@ -1,4 +1,4 @@
-//! How long work is stopped, and reports how far it is.
+//! Stops work that takes long, and reports its progress.
 //!
 //! Work that a [`Job`] watches ([`Job::watch`]) asks at each row, face or round whether it should go on: by [`Job::go_on`]
 //! where it has the job and may fail, by [`poll`] anywhere else. A look at a cancelled job unwinds to the watch around

@@ -1,4 +1,4 @@
-//! Floor 9: the commands; the only place with stdout, exit codes, arguments, clock and threads count.
+//! Floor 9: the commands; the only place with stdout, exit codes, arguments, the clock and the number of threads.
 
 mod cases;
 mod check;
@@ -75,7 +75,7 @@ pub enum Exit {
     Bug = 3,
     /// Stopped by Ctrl-C.
     Interrupted = 130,
-    /// All is well, but whoever read standard output has gone: what the system says of programs that end by this.
+    /// All is well, but the reader of standard output is gone: the status of a process ended by SIGPIPE.
     ClosedPipe = 141,
 }
 

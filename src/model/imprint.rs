@@ -44,7 +44,7 @@ pub(super) fn beside(curve: &Chain, others: &[Chain], tolerance: &Tolerance) -> 
     let mut runs: Vec<(f64, f64)> = Vec::new();
     for other in others {
         let shared = meet(curve, other, tolerance)?;
-        runs.extend(shared.iter().filter_map(|m| m.shared_to.map(|to| (m.fa.min(to.0), m.fa.max(to.0)))));
+        runs.extend(shared.iter().filter_map(|m| m.overlap_end.map(|to| (m.fa.min(to.0), m.fa.max(to.0)))));
     }
     if runs.is_empty() {
         return Ok(vec![curve.clone()]);
@@ -87,7 +87,7 @@ impl Model {
             job.go_on()?;
             let (a, b) = pairs[k];
             let found = meet(a, b, tolerance)?;
-            let both = |m: &crate::network::Meeting| [Some(m.point), m.shared_to.map(|to| a.point(to.0))];
+            let both = |m: &crate::network::Meeting| [Some(m.point), m.overlap_end.map(|to| a.point(to.0))];
             Ok::<Vec<DVec3>, Fault>(found.iter().flat_map(both).flatten().collect())
         })?;
         let points = points.into_iter().flatten().collect();

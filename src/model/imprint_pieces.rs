@@ -85,7 +85,7 @@ impl Model {
         for edge in edges {
             let Some(way) = self.edge_chain(edge, network, tolerance)? else { continue };
             for run in with_curve(&way, std::slice::from_ref(surface), tolerance)? {
-                let Some(to) = run.shared_to else { continue };
+                let Some(to) = run.overlap_end else { continue };
                 let whole = run.f <= 0.0 && to >= 1.0;
                 kept.push(if whole { way.clone() } else { way.slice(run.f, to, tolerance)? });
             }

@@ -183,7 +183,7 @@ impl ClosedSkin {
                 job::poll();
                 let normal = surface.normal(hit.uv.0, hit.uv.1);
                 let sine = way.dot(normal) * if *other { -1.0 } else { 1.0 };
-                if hit.shared_to.is_some() || sine.abs() < CROSSES {
+                if hit.overlap_end.is_some() || sine.abs() < CROSSES {
                     return None;
                 }
                 places.push(hit.f * ray.length());

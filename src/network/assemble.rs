@@ -50,7 +50,7 @@ pub struct Stations {
 /// Nodes and links of curves; writes their runs and stations into `curves` and returns notes about shared runs.
 pub fn assemble(curves: &mut [NetCurve], parts: &Parts) -> Result<(Vec<Node>, Vec<Link>, Vec<Fault>)> {
     let mut stations = stations(curves, parts)?;
-    lonely_rings(curves, parts, &mut stations);
+    isolated_rings(curves, parts, &mut stations);
     let shared = shared::match_segments(curves, parts, &mut stations);
     Ok(number(curves, stations, shared))
 }
@@ -278,16 +278,16 @@ pub fn settle(net: &NetCurve, mut row: Vec<Station>, stations: &Stations, closed
 }
 
 /// A closed curve that meets nothing gets a node at its start.
-fn lonely_rings(curves: &[NetCurve], parts: &Parts, stations: &mut Stations) {
-    let lonely: Vec<usize> = (0..curves.len()).filter(|&k| stations.rows[k].is_empty()).collect();
-    if lonely.is_empty() {
+fn isolated_rings(curves: &[NetCurve], parts: &Parts, stations: &mut Stations) {
+    let isolated: Vec<usize> = (0..curves.len()).filter(|&k| stations.rows[k].is_empty()).collect();
+    if isolated.is_empty() {
         return;
     }
-    let all: Vec<DVec3> = lonely.iter().map(|&k| curves[k].curve.start()).chain(parts.points.iter().copied()).collect();
+    let all: Vec<DVec3> = isolated.iter().map(|&k| curves[k].curve.start()).chain(parts.points.iter().copied()).collect();
     let roots = cluster(&all, parts.tolerance.point);
-    for (i, &k) in lonely.iter().enumerate() {
+    for (i, &k) in isolated.iter().enumerate() {
         let near = |p: &DVec3| p.distance_squared(all[i]);
-        let declared = (lonely.len()..all.len()).filter(|&j| roots[j] == roots[i]).map(|j| all[j]);
+        let declared = (isolated.len()..all.len()).filter(|&j| roots[j] == roots[i]).map(|j| all[j]);
         let point = declared.min_by(|a, b| near(a).total_cmp(&near(b)).then(compare_points(*a, *b))).unwrap_or(all[i]);
         stations.rows[k].push(Station { s: 0.0, node: stations.points.len() as u32 });
         stations.points.push(point);

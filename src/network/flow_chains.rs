@@ -83,7 +83,7 @@ pub fn node_lists(chains: &[Chain], tolerance: &Tolerance) -> Result<(Vec<DVec3>
         for m in found {
             let node = mark(a, m.fa, m.point, None);
             mark(b, m.fb, m.point, Some(node));
-            if let Some((fa, fb)) = m.shared_to {
+            if let Some((fa, fb)) = m.overlap_end {
                 let node = mark(a, fa, chains[a].point(fa), None);
                 mark(b, fb, chains[a].point(fa), Some(node));
             }

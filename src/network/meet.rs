@@ -11,7 +11,7 @@ use crate::geometry::intersect;
 use crate::geometry::{Hit, closest_pair};
 use crate::network::fault::MeetingFault;
 
-/// One meeting of two chains: a node of the two, or the ends of a shared run.
+/// One meeting of two chains: a node of the two, or the ends of an overlap.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Meeting {
     /// The point: an end or joint point where one is among the hits, else the mean.
@@ -22,8 +22,8 @@ pub struct Meeting {
     pub fb: f64,
     /// They touch without crossing.
     pub tangent: bool,
-    /// `Some((fa, fb))`: the other end of a run that both share from here on.
-    pub shared_to: Option<(f64, f64)>,
+    /// `Some((fa, fb))`: the other end of an overlap that begins here.
+    pub overlap_end: Option<(f64, f64)>,
 }
 
 /// All meetings, ordered along `a`, each node once.
@@ -47,12 +47,12 @@ pub fn meet(a: &Chain, b: &Chain, tolerance: &Tolerance) -> Result<Vec<Meeting>>
     Ok(tidy(a, b, found, tolerance))
 }
 
-/// The one meeting that `a & b` stands for; none, several or a shared run are E507, E508, E509 with candidates and the closest miss.
+/// The one meeting that `a & b` stands for; none, several or an overlap are E507, E508, E509 with candidates and the closest miss.
 pub fn meet_once(a: &Chain, b: &Chain, tolerance: &Tolerance) -> Result<Meeting> {
     let meetings = meet(a, b, tolerance)?;
-    if meetings.iter().any(|m| m.shared_to.is_some()) {
-        let runs = meetings.iter().filter_map(|m| m.shared_to.map(|(fa, _)| (m.point, a.point(fa)))).collect();
-        return Err(MeetingFault::SharesRun { a: a.origin(), b: b.origin(), runs }.into());
+    if meetings.iter().any(|m| m.overlap_end.is_some()) {
+        let overlaps = meetings.iter().filter_map(|m| m.overlap_end.map(|(fa, _)| (m.point, a.point(fa)))).collect();
+        return Err(MeetingFault::Overlap { a: a.origin(), b: b.origin(), overlaps }.into());
     }
     match meetings.as_slice() {
         [one] => Ok(*one),
@@ -92,7 +92,7 @@ pub fn closest_points(a: &Chain, b: &Chain) -> (DVec3, DVec3) {
     best
 }
 
-/// Places of the first two of some chains that run over the same parts of curves, in either direction.
+/// Indices of the first two chains that are the same runs, in either direction.
 pub fn given_twice(chains: &[Chain], tolerance: &Tolerance) -> Option<(usize, usize)> {
     let ends = |c: &Chain| (c.start(), c.end());
     let same_ends = |a: &Chain, b: &Chain| {
@@ -148,7 +148,7 @@ fn collect(hit: Hit, a: RunOf, b: RunOf, tolerance: &Tolerance, found: &mut Vec<
             let sa = on_run(run_a, run_a.curve.length_at(ta), tolerance);
             let sb = on_run(run_b, run_b.curve.length_at(tb), tolerance);
             if let (Some(sa), Some(sb)) = (sa, sb) {
-                found.push(Meeting { point: at, fa: a.fraction(sa), fb: b.fraction(sb), tangent, shared_to: None });
+                found.push(Meeting { point: at, fa: a.fraction(sa), fb: b.fraction(sb), tangent, overlap_end: None });
             }
         }
         Hit::Overlap { a: (ta0, ta1), b: (tb0, tb1) } => {
@@ -163,13 +163,13 @@ fn collect(hit: Hit, a: RunOf, b: RunOf, tolerance: &Tolerance, found: &mut Vec<
             let (held_a, held_b) = (held(run_a, along_a), held(run_b, along_b));
             let (from, to) = (held_a.0.max(held_b.0), held_a.1.min(held_b.1));
             let at = |share: f64| (along_a.0 + (along_a.1 - along_a.0) * share, along_b.0 + (along_b.1 - along_b.0) * share);
-            push_shared(a, b, (at(from), at(to)), tolerance, found);
+            push_overlap(a, b, (at(from), at(to)), tolerance, found);
         }
     }
 }
 
 /// An overlap given by arc lengths on both curves; one of no length is a point, one of negative length nothing.
-fn push_shared(a: RunOf, b: RunOf, (from, to): ((f64, f64), (f64, f64)), tolerance: &Tolerance, found: &mut Vec<Meeting>) {
+fn push_overlap(a: RunOf, b: RunOf, (from, to): ((f64, f64), (f64, f64)), tolerance: &Tolerance, found: &mut Vec<Meeting>) {
     let length = to.0 - from.0;
     if length < -tolerance.point {
         return;
@@ -179,11 +179,11 @@ fn push_shared(a: RunOf, b: RunOf, (from, to): ((f64, f64), (f64, f64)), toleran
     if last.0 < first.0 {
         std::mem::swap(&mut first, &mut last);
     }
-    let shared_to = (length > tolerance.point).then_some(last);
-    found.push(Meeting { point: a.chain.point(first.0), fa: first.0, fb: first.1, tangent: true, shared_to });
+    let overlap_end = (length > tolerance.point).then_some(last);
+    found.push(Meeting { point: a.chain.point(first.0), fa: first.0, fb: first.1, tangent: true, overlap_end });
 }
 
-/// Two runs on one curve share what both run over.
+/// Two runs on one curve overlap in what both run over.
 fn on_one_curve(a: RunOf, b: RunOf, tolerance: &Tolerance, found: &mut Vec<Meeting>) {
     let (run_a, run_b) = (a.run(), b.run());
     let length = run_a.curve.length();
@@ -191,7 +191,7 @@ fn on_one_curve(a: RunOf, b: RunOf, tolerance: &Tolerance, found: &mut Vec<Meeti
     for turn in turns {
         let lo = run_a.s0.min(run_a.s1).max(run_b.s0.min(run_b.s1) + turn);
         let hi = run_a.s0.max(run_a.s1).min(run_b.s0.max(run_b.s1) + turn);
-        push_shared(a, b, ((lo, lo - turn), (hi, hi - turn)), tolerance, found);
+        push_overlap(a, b, ((lo, lo - turn), (hi, hi - turn)), tolerance, found);
     }
 }
 
@@ -201,7 +201,7 @@ fn tidy(a: &Chain, b: &Chain, mut found: Vec<Meeting>, tolerance: &Tolerance) ->
     let (closed_a, closed_b) = (a.is_closed(tolerance), b.is_closed(tolerance));
     for m in &mut found {
         // The start of a closed chain stands for its end.
-        if m.shared_to.is_none() {
+        if m.overlap_end.is_none() {
             m.fa = if closed_a && m.fa >= 1.0 - near_a { 0.0 } else { m.fa };
             m.fb = if closed_b && m.fb >= 1.0 - near_b { 0.0 } else { m.fb };
         }
@@ -212,10 +212,10 @@ fn tidy(a: &Chain, b: &Chain, mut found: Vec<Meeting>, tolerance: &Tolerance) ->
     let mut out: Vec<Meeting> = Vec::with_capacity(found.len());
     for m in found {
         if let Some(last) = out.last_mut()
-            && last.shared_to.is_some_and(|(fa, fb)| m.fa <= fa + near_a && (m.shared_to.is_none() || (m.fb - fb).abs() <= near_b))
+            && last.overlap_end.is_some_and(|(fa, fb)| m.fa <= fa + near_a && (m.overlap_end.is_none() || (m.fb - fb).abs() <= near_b))
         {
             // A point on an overlap adds nothing, an overlap that goes on lengthens it.
-            if let (Some(end), Some(more)) = (&mut last.shared_to, m.shared_to)
+            if let (Some(end), Some(more)) = (&mut last.overlap_end, m.overlap_end)
                 && more.0 > end.0
             {
                 *end = more;
@@ -223,13 +223,13 @@ fn tidy(a: &Chain, b: &Chain, mut found: Vec<Meeting>, tolerance: &Tolerance) ->
             continue;
         }
         let near = |k: &Meeting| {
-            k.shared_to.is_none() && tolerance.same_point(k.point, m.point) && (k.fa - m.fa).abs() * a.length() <= REACH * tolerance.point
+            k.overlap_end.is_none() && tolerance.same_point(k.point, m.point) && (k.fa - m.fa).abs() * a.length() <= REACH * tolerance.point
         };
-        if m.shared_to.is_none() && out.iter().rev().take_while(|k| m.fa - k.fa <= REACH * near_a).any(near) {
+        if m.overlap_end.is_none() && out.iter().rev().take_while(|k| m.fa - k.fa <= REACH * near_a).any(near) {
             continue;
         }
         // A point where an overlap begins is a part of it.
-        if m.shared_to.is_some() {
+        if m.overlap_end.is_some() {
             while out.last().is_some_and(near) {
                 out.pop();
             }
@@ -242,7 +242,7 @@ fn tidy(a: &Chain, b: &Chain, mut found: Vec<Meeting>, tolerance: &Tolerance) ->
 /// Hits of one node are at most this many tolerances apart along a chain.
 const REACH: f64 = 4.0;
 
-/// The end or joint of a chain within reach of a fraction, for an end that is really an end.
+/// The end or joint of a chain within reach of a fraction.
 fn corner(chain: &Chain, f: f64, near: f64) -> Option<DVec3> {
     let joints = chain.joints();
     let k = joints.partition_point(|&j| j < f);

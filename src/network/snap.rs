@@ -50,7 +50,7 @@ pub fn may_snap(gap: f64, shorter: f64) -> bool {
 /// point, else to their mean. Each move is noted in `sink` (N513, W223 where it is large against the curve); two ends that cannot
 /// move are E511, but for two that are settled.
 ///
-/// `asked` is the expression that says the distance. Independent of the order of ends.
+/// `asked` is the expression in which the distance is written. Independent of the order of ends.
 pub fn snap(
     ends: &[SnapEnd],
     points: &[DVec3],

@@ -244,7 +244,7 @@ impl Finder<'_> {
                 let mut said = Vec::new();
                 let built = self.scene.shell(shell, &self.tolerance, &mut said)?;
                 faces.add_shell(plan, shell, &built);
-                // What touches is reported for the mesh where it does so there.
+                // Contacts of faces are reported for the mesh, where it has them.
                 sink.extend(said.into_iter().filter(|fault| !fault.code().0.starts_with('N') && fault.code().0 != "W667"));
             }
             Value::Curve(chain) => plan.curves.push((cx.name(chain.origin()), chain.clone())),

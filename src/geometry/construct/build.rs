@@ -23,7 +23,7 @@ use crate::geometry::shapes::nurbs::{MAX_DEGREE, Nurbs, weighted};
 pub use crate::geometry::construct::offset_build::offset;
 pub use crate::geometry::construct::spline::{Ends, Spline, spline};
 
-/// E408 unless all numbers of a point or vector are finite, E306 when one is beyond all measure.
+/// E408 unless all numbers of a point or vector are finite, E306 when one exceeds `COORDINATE`.
 pub(crate) fn finite(v: DVec3, argument: &'static str, of: Origin) -> Result<()> {
     if !v.is_finite() {
         return Err(CurveFault::NonFinite { of, argument, index: None }.into());

@@ -22,7 +22,7 @@ pub struct Contexts {
 }
 
 impl Contexts {
-    /// What a file says of representations.
+    /// The contexts of the representations of a file.
     pub fn of(file: &File) -> Self {
         let mut contexts = Self::default();
         for k in 0..file.records.len() as u32 {

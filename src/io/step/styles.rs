@@ -49,7 +49,7 @@ pub struct StyleTable {
 }
 
 impl StyleTable {
-    /// What a file says of table.
+    /// Colours and layers of a file.
     pub fn of(file: &File) -> Self {
         let mut table = Self::default();
         let contexts = Contexts::of(file);

@@ -1,4 +1,4 @@
-//! Surfaces between parameters.
+//! `RECTANGULAR_TRIMMED_SURFACE`: the part of a surface between two u and two v.
 
 use crate::base::math;
 use crate::base::tolerance::{EPSILON, NUDGE};
@@ -17,7 +17,7 @@ use crate::surface::swept::revolve::Axis;
 const TURN: f64 = std::f64::consts::TAU;
 
 impl Step<'_> {
-    /// The part of a surface between two u and two v.
+    /// A `RECTANGULAR_TRIMMED_SURFACE` as a face.
     pub fn rectangle(&mut self, k: u32) -> Result<Face, Defect> {
         let row = self.file.parameters(k);
         let base = self.within_parameters(k)?;
@@ -26,7 +26,7 @@ impl Step<'_> {
         Ok(face)
     }
 
-    /// The surface between its parameters, with its own normals.
+    /// The basis surface of a `RECTANGULAR_TRIMMED_SURFACE` between its parameters, with its own normals.
     pub fn within_parameters(&mut self, k: u32) -> Result<Base, Defect> {
         let row = self.file.parameters(k);
         let [u0, u1, v0, v1] = [row.number(2)?, row.number(3)?, row.number(4)?, row.number(5)?];
@@ -39,8 +39,8 @@ impl Step<'_> {
         let row = self.file.parameters(k);
         let (length, angle) = (self.scale, self.units.radians);
         let ordered = |a: f64, b: f64| (a.min(b), a.max(b));
-        // A sense against the parameters changes their order; round a surface they may run over its seam.
-        let round = |a: f64, b: f64| {
+        // Parameters in reverse order are swapped; a range of angles may cross the seam.
+        let turn_range = |a: f64, b: f64| {
             let (a, b) = (a * angle, b * angle);
             let sweep = if b > a { b - a } else { b - a + TURN };
             if !(sweep > 0.0 && sweep <= TURN * (1.0 + NUDGE)) {
@@ -62,7 +62,7 @@ impl Step<'_> {
                 let radius = row.number(2)? * length;
                 let (v0, v1) = ordered(v0 * length, v1 * length);
                 let at = |v: f64| frame.at + frame.z * v + frame.x * (radius + slope * v);
-                whole(round(u0, u1)?, Axis { about: frame.at, direction: frame.z }, build::line(at(v0), at(v1), self.origin)?)
+                whole(turn_range(u0, u1)?, Axis { about: frame.at, direction: frame.z }, build::line(at(v0), at(v1), self.origin)?)
             }
             b"SPHERICAL_SURFACE" | b"TOROIDAL_SURFACE" => {
                 let frame = self.frame(row.entity(1)?)?;
@@ -70,20 +70,20 @@ impl Step<'_> {
                 let (major, minor) = if is_sphere { (0.0, row.number(2)?) } else { (row.number(2)?, row.number(3)?) };
                 let (major, minor) = (major * length, minor * length);
                 let circle = Endless::Ellipse(frame.at + frame.x * major, frame.x * minor, frame.z * minor);
-                let (v0, v1) = if is_sphere { ordered(v0 * angle, v1 * angle) } else { round(v0, v1)? };
-                whole(round(u0, u1)?, Axis { about: frame.at, direction: frame.z }, circle.part(v0, v1, self.origin)?)
+                let (v0, v1) = if is_sphere { ordered(v0 * angle, v1 * angle) } else { turn_range(v0, v1)? };
+                whole(turn_range(u0, u1)?, Axis { about: frame.at, direction: frame.z }, circle.part(v0, v1, self.origin)?)
             }
             b"SURFACE_OF_LINEAR_EXTRUSION" => {
                 let of = self.course(row.entity(1)?, 0)?;
                 let by = self.vector(row.entity(2)?)?;
                 let (v0, v1) = ordered(v0, v1);
-                let profile = self.over(&of, u0, u1)?.moved(&Motion::translation(by * v0));
+                let profile = self.part_of(&of, u0, u1)?.moved(&Motion::translation(by * v0));
                 Ok(Base::Swept { profile, by: by * (v1 - v0) })
             }
             b"SURFACE_OF_REVOLUTION" => {
                 let of = self.course(row.entity(1)?, 0)?;
                 let frame = self.frame(row.entity(2)?)?;
-                whole(round(u0, u1)?, Axis { about: frame.at, direction: frame.z }, self.over(&of, v0, v1)?)
+                whole(turn_range(u0, u1)?, Axis { about: frame.at, direction: frame.z }, self.part_of(&of, v0, v1)?)
             }
             _ => match self.base(k, &FaceLoops::NONE, 0)? {
                 Base::Net(net, [a, b, c, d]) if a.is_finite() => {
@@ -100,8 +100,8 @@ impl Step<'_> {
         }
     }
 
-    /// The stretch of a curve between two of the file's parameters.
-    fn over(&mut self, of: &Course, a: f64, b: f64) -> Result<Curve, Defect> {
+    /// The part of a curve between two of the file's parameters.
+    fn part_of(&mut self, of: &Course, a: f64, b: f64) -> Result<Curve, Defect> {
         match of {
             Course::Endless(endless) => {
                 let unit = if endless.closes() { self.units.radians } else { 1.0 };

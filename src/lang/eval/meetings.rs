@@ -63,7 +63,7 @@ pub(crate) fn meet_all(cx: &mut Cx, a: &Meeting, b: &Meeting) -> Result<Vec<Valu
             let mut places = Vec::new();
             for meeting in meet::meet(a, b, &tolerance)? {
                 places.push(Value::Node(meeting.point));
-                places.extend(meeting.shared_to.map(|(fa, _)| Value::Node(a.point(fa))));
+                places.extend(meeting.overlap_end.map(|(fa, _)| Value::Node(a.point(fa))));
             }
             Ok(places)
         }
@@ -72,7 +72,7 @@ pub(crate) fn meet_all(cx: &mut Cx, a: &Meeting, b: &Meeting) -> Result<Vec<Valu
             let mut places = Vec::new();
             for meeting in with_curve::with_curve(curve, &faces, &tolerance)? {
                 places.push(Value::point(meeting.point));
-                places.extend(meeting.shared_to.map(|f| Value::point(curve.point(f))));
+                places.extend(meeting.overlap_end.map(|f| Value::point(curve.point(f))));
             }
             Ok(places)
         }

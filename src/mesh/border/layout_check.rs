@@ -42,12 +42,12 @@ impl Layout {
         for (track, uses) in pieces.of_track.iter().enumerate() {
             let (Some(first), Some(last)) = (uses.first(), uses.last()) else { continue };
             if let Some(used) = uses.iter().find(|u| !self.has(u.segment)) {
-                return Err(format!("track {track} runs along stretch {}, which is not there", used.segment));
+                return Err(format!("track {track} runs along segment {}, which is not there", used.segment));
             }
             let whole = (first.s.0, last.s.1) == (0.0, self.parts[track].track.length());
             let follow = uses.windows(2).all(|w| w[0].s.1 == w[1].s.0 && self.ends(&w[0]).1 == self.ends(&w[1]).0);
             if !whole || !follow || uses.iter().any(|u| u.s.0 >= u.s.1) {
-                return Err(format!("the stretches of track {track} do not follow each other from its start to its end"));
+                return Err(format!("the segments of track {track} do not follow each other from its start to its end"));
             }
             if self.ends(first).0 != pieces.starts[track] {
                 return Err(format!("track {track} does not start at its junction"));
@@ -60,11 +60,11 @@ impl Layout {
         let pieces = &self.pieces;
         for (k, segment) in pieces.segments.iter().enumerate() {
             if segment.ends.0.max(segment.ends.1) >= pieces.junctions.len() {
-                return Err(format!("stretch {k} ends at no junction"));
+                return Err(format!("segment {k} ends at no junction"));
             }
             let own = SegmentUse { segment: k, against: false, s: segment.s };
             if !pieces.of_track.get(segment.track).is_some_and(|uses| uses.contains(&own)) {
-                return Err(format!("the track of stretch {k} does not run along it"));
+                return Err(format!("the track of segment {k} does not run along it"));
             }
         }
         if pieces.junctions.iter().any(|p| !p.is_finite()) {
@@ -84,7 +84,7 @@ impl Layout {
                 let lies =
                     |a: &&usize| [0.25, 0.5, 0.75].iter().all(|f| self.distance(**a, self.point(*b, *f)) <= MAX_SAME_SHARE * tolerance);
                 if let Some(a) = same[..n].iter().find(lies) {
-                    return Err(format!("stretches {a} and {b} are one"));
+                    return Err(format!("segments {a} and {b} are one"));
                 }
             }
         }
@@ -100,7 +100,7 @@ impl Layout {
         }
         for uses in self.of_link.iter().map(|link| &link.1).chain(&self.curves) {
             if uses.iter().any(|u| !self.has(u.segment) || u.s.0 >= u.s.1) || !uses.is_sorted_by(|a, b| a.s.0 <= b.s.0) {
-                return Err("a link or curve runs along stretches that are not there or not in order".to_owned());
+                return Err("a link or curve runs along segments that are not there or not in order".to_owned());
             }
         }
         let junctions = self.points.iter().chain(&self.pieces.of_anchor).flatten();
@@ -142,10 +142,10 @@ impl Layout {
     /// The junctions where a side starts and ends.
     fn check_side(&self, side: &FaceSide, tolerance: f64) -> Result<(usize, usize), String> {
         let (Some(first), Some(last)) = (side.uses.first(), side.uses.last()) else {
-            return side.pole.map(|pole| (pole, pole)).ok_or_else(|| "has neither stretches nor a pole".to_owned());
+            return side.pole.map(|pole| (pole, pole)).ok_or_else(|| "has neither segments nor a pole".to_owned());
         };
         if side.uses.iter().any(|u| !self.has(u.segment)) {
-            return Err("runs along a stretch that is not there".to_owned());
+            return Err("runs along a segment that is not there".to_owned());
         }
         let near = |a: f64, b: f64| (a - b).abs() <= tolerance;
         let whole = near(first.s.0, 0.0) && near(last.s.1, side.length);
@@ -166,7 +166,7 @@ impl Layout {
                 return Err("holds a line that is not there".to_owned());
             }
             if around.contains(line) || face.lines[..k].contains(line) {
-                return Err(format!("has stretch {line} as a line inside, and that on its border or twice"));
+                return Err(format!("has segment {line} as a line inside, and that on its border or twice"));
             }
         }
         Ok(())
@@ -183,7 +183,7 @@ impl Layout {
             uses.iter().for_each(|u| counts[u.segment] -= users as i64);
         }
         match counts.iter().position(|n| *n != 0) {
-            Some(k) => Err(format!("sides of faces run along stretch {k} more or less often than its edges say")),
+            Some(k) => Err(format!("sides of faces run along segment {k} more or less often than its edges say")),
             None => Ok(()),
         }
     }

@@ -19,7 +19,7 @@ pub struct Nodes {
 }
 
 impl Nodes {
-    /// Numbers the nodes: used junctions, lonely points, then segment by segment; `fractions` of the length are those of the nodes of a
+    /// Numbers the nodes: used junctions, isolated points, then segment by segment; `fractions` of the length are those of the nodes of a
     /// segment with so many steps, from 0 to 1.
     pub fn new(layout: &Layout, counts: &[u32], fractions: impl Fn(usize, u32) -> Vec<f64>) -> Self {
         let n = layout.pieces.segments.len();
@@ -86,12 +86,12 @@ impl Nodes {
     }
 
     /// Points of all these nodes.
-    pub fn points(&self, layout: &Layout, lonely: &[DVec3]) -> Vec<DVec3> {
+    pub fn points(&self, layout: &Layout, isolated: &[DVec3]) -> Vec<DVec3> {
         let mut points = vec![DVec3::ZERO; self.total as usize];
         for (junction, id) in self.junctions.iter().enumerate().filter(|(_, id)| **id != u32::MAX) {
             points[*id as usize] = layout.pieces.junctions[junction];
         }
-        for ((p, id), junction) in lonely.iter().zip(&self.points).zip(&layout.points) {
+        for ((p, id), junction) in isolated.iter().zip(&self.points).zip(&layout.points) {
             if junction.is_none() {
                 points[*id as usize] = *p;
             }

@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::base::tolerance::EPSILON;
-use crate::mesh::chart::parametric_surface::{Near, ParametricSurface, Spot};
+use crate::mesh::chart::parametric_surface::{LocalExpansion, ParametricSurface, Spot};
 use crate::surface::core::evaluator::PreparedSurface;
 use crate::surface::{Domain, Evaluator, Jet2, Surface};
 
@@ -90,13 +90,13 @@ impl ParametricSurface for Chart {
         Spot { p, dx, dy: (dv - dx * self.b) * self.by.1 }
     }
 
-    fn near(&self, xy: DVec2) -> Near {
+    fn expansion(&self, xy: DVec2) -> LocalExpansion {
         let jet = self.jet(xy);
         let (by_x, by_y) = self.by;
         let (dx, dxx) = (jet.du * by_x, jet.duu * (by_x * by_x));
         let dxv = jet.duv * by_x;
         let bends = [dxx, (dxv - dxx * self.b) * by_y, (jet.dvv - (dxv * 2.0 - dxx * self.b) * self.b) * (by_y * by_y)];
-        Near { spot: Spot { p: jet.p, dx, dy: (jet.dv - dx * self.b) * by_y }, bends }
+        LocalExpansion { spot: Spot { p: jet.p, dx, dy: (jet.dv - dx * self.b) * by_y }, bends }
     }
 
     fn point(&self, xy: DVec2) -> DVec3 {

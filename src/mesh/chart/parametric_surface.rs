@@ -27,17 +27,17 @@ impl Spot {
     }
 }
 
-/// A surface beside a place of its chart, to second order.
+/// Second-order expansion about a place of the chart.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Near {
+pub struct LocalExpansion {
     /// The place itself.
     pub spot: Spot,
     /// ∂²/∂x², ∂²/∂x∂y and ∂²/∂y².
     pub bends: [DVec3; 3],
 }
 
-impl Near {
-    /// Point and derivatives so far from the place.
+impl LocalExpansion {
+    /// Point and derivatives at a distance in the chart from the place.
     pub fn spot(&self, d: DVec2) -> Spot {
         let Spot { p, dx, dy } = self.spot;
         let [xx, xy, yy] = self.bends;
@@ -50,9 +50,9 @@ impl Near {
 pub trait ParametricSurface: Sync {
     /// Point and derivatives.
     fn spot(&self, xy: DVec2) -> Spot;
-    /// What is beside a place; a plane where second derivatives are not known.
-    fn near(&self, xy: DVec2) -> Near {
-        Near { spot: self.spot(xy), ..Near::default() }
+    /// The expansion about a place; a plane where second derivatives are not known.
+    fn expansion(&self, xy: DVec2) -> LocalExpansion {
+        LocalExpansion { spot: self.spot(xy), ..LocalExpansion::default() }
     }
     /// The point alone.
     fn point(&self, xy: DVec2) -> DVec3 {
@@ -102,22 +102,23 @@ pub fn foot_spot(chart_surface: &dyn ParametricSurface, from: DVec2, wanted: DVe
         xy = chart_surface.clamp(xy + step);
         spot = chart_surface.spot(xy);
         let moved = spot.dx * step.x + spot.dy * step.y;
-        // A flat or nearly flat place is met at once.
-        if (wanted - spot.p).dot(moved).abs() <= FOOT * moved.length_squared() {
+        // On a flat place one step reaches the foot.
+        if (wanted - spot.p).dot(moved).abs() <= MAX_FOOT_ERROR * moved.length_squared() {
             break;
         }
     }
     (xy, spot)
 }
 
-/// The same by a guess that a mean of places in the chart gave, for a step so long: near a pole it is no foot.
+/// Foot from a guess that is a mean of places in the chart; the guess itself where it is off by less than `MAX_GUESS_ERROR` of `step`.
+/// Near a pole such a mean is not a foot.
 pub fn foot_near(chart_surface: &dyn ParametricSurface, guess: DVec2, wanted: DVec3, step: f64) -> (DVec2, Spot) {
     let spot = chart_surface.spot(guess);
     let off = spot.step(wanted - spot.p).map_or(0.0, |d| (spot.dx * d.x + spot.dy * d.y).length_squared());
-    if off > AMISS * AMISS * step * step { foot_spot(chart_surface, guess, wanted) } else { (guess, spot) }
+    if off > MAX_GUESS_ERROR * MAX_GUESS_ERROR * step * step { foot_spot(chart_surface, guess, wanted) } else { (guess, spot) }
 }
 
 /// Share of a step by which a guess of its end may be off.
-const AMISS: f64 = 0.1;
-/// Share of a step that may be missing at its end.
-const FOOT: f64 = 0.02;
+const MAX_GUESS_ERROR: f64 = 0.1;
+/// Share of a step that may be left to the foot at its end.
+const MAX_FOOT_ERROR: f64 = 0.02;

@@ -59,8 +59,8 @@ pub struct EdgePlace<'a> {
 /// On the local quadric of principal curvatures k1 ≥ |k2| it is at most k1 h² (1/8 + max(k2/k1, 0)/24) away.
 pub fn wanted(jet: &Jet2, chord: Option<f64>, angle: Option<f64>) -> f64 {
     let normal = jet.du.cross(jet.dv).normalize_or_zero();
-    let (mean, enclosure) = jet.curvatures(normal);
-    let (k1, k2) = (mean.abs() + enclosure, mean.abs() - enclosure);
+    let (mean, half_difference) = jet.curvatures(normal);
+    let (k1, k2) = (mean.abs() + half_difference, mean.abs() - half_difference);
     if !(k1 > 0.0 && k1.is_finite()) {
         return f64::INFINITY;
     }

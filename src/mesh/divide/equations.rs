@@ -11,7 +11,7 @@ pub struct Unknown {
     pub written: Option<u32>,
     /// Length, model units; the longest step is the first to be halved.
     pub length: f64,
-    /// The count is even, unless a written one leaves no way: quads that no map gives are best so.
+    /// The count is even unless a written one prevents it: best for freely meshed faces of quads.
     pub even: bool,
 }
 
@@ -20,7 +20,7 @@ pub struct Unknown {
 pub enum Relation {
     /// Both sums are equal.
     Equal(Vec<usize>, Vec<usize>),
-    /// The border of quads that no map gives: an even sum.
+    /// The border of a freely meshed face of quads: an even sum.
     EvenSum(Vec<usize>),
     /// Three sides filled with quads: an even sum, each side less than the other two together.
     ThreeSides([Vec<usize>; 3]),
@@ -56,7 +56,7 @@ pub enum Conflict {
         /// Written segments behind them.
         written: Vec<usize>,
     },
-    /// A written count is odd where quads that no map gives need an even one, or makes such a count odd.
+    /// A written count is odd where a freely meshed face of quads needs an even one, or makes such a count odd.
     Odd {
         /// The written segment, where there is one.
         written: Option<usize>,

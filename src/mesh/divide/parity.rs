@@ -1,6 +1,6 @@
 //! Which counts are even and which odd: equations between counts, taken modulo two.
 //!
-//! Quads that no map gives take an even number of steps on every segment of their border. What is joined to such a segment
+//! Freely meshed faces of quads have an even number of elements on every segment of their border. What is joined to such a segment
 //! by mapped faces follows; where there is a choice, even it is.
 
 use std::collections::BTreeSet;

@@ -143,7 +143,7 @@ impl Relations {
         }
     }
 
-    /// E704 where free quads have a border with an odd number of steps in all.
+    /// E704 where a freely meshed face of quads has an odd number of elements along its border in all.
     pub fn refuse_odd_borders(&self, input: &Input, layout: &Layout, sizing: &Sizing, counts: &[u32]) -> Result<()> {
         for face in layout.faces.iter().filter(|f| f.takes_quads()) {
             let round = face.sides.iter().flat_map(|s| &s.uses).map(|u| u.segment);
@@ -172,8 +172,8 @@ impl Relations {
         match conflict {
             Conflict::Differ { relation, a, b } => {
                 let (surface, at) = place(*relation);
-                let says = |side: &(u32, Option<usize>)| (side.0, side.1.map_or(Origin::NONE, |s| written(s).1));
-                CountFault::Differ { a: says(a), b: says(b), surface, at }.into()
+                let located = |side: &(u32, Option<usize>)| (side.0, side.1.map_or(Origin::NONE, |s| written(s).1));
+                CountFault::Differ { a: located(a), b: located(b), surface, at }.into()
             }
             Conflict::Endless { relation } => {
                 let (surface, at) = place(*relation);
@@ -206,7 +206,9 @@ impl Relations {
         let angle = plan.settings.angle_error.filter(|_| row.is_some_and(|r| r.limit == MeshLimit::AngleError));
         let limit = angle.map(|angle| (MeshLimit::AngleError, angle.1)).or_else(|| plan.bend_limit());
         match limit {
-            Some((limit, says)) if least > 3 || row.is_some() => CountFault::TooCoarse { count, limit, says, needed: least, at }.into(),
+            Some((limit, written_at)) if least > 3 || row.is_some() => {
+                CountFault::TooCoarse { count, limit, written_at, needed: least, at }.into()
+            }
             _ => CountFault::TooFew { count, needed: least, at }.into(),
         }
     }
@@ -217,13 +219,14 @@ impl Relations {
         let face = &layout.faces[worst];
         let surface = input.model.surfaces[face.surface.index()].surface.origin();
         let limit = verdicts[worst].broken;
-        let says = input.plan.limit(limit).map(|value| value.1);
+        let written_at = input.plan.limit(limit).map(|value| value.1);
         let at = crate::mesh::border::layout::middle(input, face);
-        SizeFault::NotReached { limit, says: says.unwrap_or(input.plan.origin), surface, reached: verdicts[worst].reached, at }.into()
+        SizeFault::NotReached { limit, written_at: written_at.unwrap_or(input.plan.origin), surface, reached: verdicts[worst].reached, at }
+            .into()
     }
 }
 
-/// The first rule whose written count is odd and gives the border of a face an odd number of steps.
+/// The first rule whose written count is odd and gives the border of a face an odd number of elements.
 fn odd_rule(plan: &Plan, sizing: &Sizing, face: &Face) -> Option<(u32, Origin)> {
     let mut steps: BTreeMap<usize, u32> = BTreeMap::new();
     for (count, rule) in face.segments().filter_map(|segment| sizing.decisions.get(segment)?.count) {

@@ -1,6 +1,6 @@
 //! How many steps each segment gets: strips of opposite sides, written counts, sums of several segments.
 //!
-//! Unknown are whole numbers, one a segment. Opposite sides of a mapped face are equal sums of them. Written counts are
+//! Unknowns are whole numbers, one for each segment. Opposite sides of a mapped face are equal sums of them. Written counts are
 //! kept to the letter; all else is raised, never lowered below the limits, until every face is satisfied.
 
 mod raised_counts;

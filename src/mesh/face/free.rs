@@ -11,8 +11,8 @@ use crate::mesh::data::face_geometry::Free;
 use crate::mesh::data::face_mesh::{FaceMesh, FreeInside};
 use crate::mesh::quad::quad_face;
 use crate::mesh::request::methods::Elements;
+use crate::mesh::tri::no_mesh::fault;
 use crate::mesh::tri::triangle_fit::{FittedFace, fitted};
-use crate::mesh::tri::trouble::fault;
 
 /// Fills the face: of quads, or of triangles that keep its limits.
 pub(crate) fn filled(
@@ -28,7 +28,7 @@ pub(crate) fn filled(
     }
     let FittedFace { triangulation, deciders, tally } = match fitted(face_input, face, chart, outline, job)? {
         Ok(fitted) => fitted,
-        Err(trouble) => return Err(fault(face_input, face, &border, trouble)),
+        Err(reason) => return Err(fault(face_input, face, &border, reason)),
     };
     // Rings are fixed, but no part of the border.
     let fixed = border.uv.len();

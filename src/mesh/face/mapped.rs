@@ -12,7 +12,7 @@ use crate::mesh::request::fault::{CountFault, FaceFault};
 use crate::mesh::request::input::Input;
 use crate::mesh::request::methods::Elements;
 
-/// The geometry and ids of a face; `rows` are the counts of its rows, `first` becomes its first inner node.
+/// The geometry and ids of a face; `rows` are the counts of its rows.
 pub fn prepare(input: &Input, layout: &Layout, nodes: &Nodes, face: &Face, rows: &[u32]) -> Result<FaceMesh> {
     if face.is_triangle() {
         return prepare_triangle(input, layout, nodes, face);

@@ -13,8 +13,8 @@ use crate::mesh::data::face_geometry::FaceNodes;
 use crate::mesh::data::face_mesh::FaceMesh;
 use crate::mesh::face::free::filled;
 use crate::mesh::request::work::{too_much_work, work_on};
+use crate::mesh::tri::no_mesh::no_area;
 use crate::mesh::tri::triangle_fit::near;
-use crate::mesh::tri::trouble::no_area;
 
 /// Computes the face, or takes it from the cache.
 pub fn prepare(face_input: &FaceInput, face: &Face, cache: Option<&CacheView>, job: &Job) -> Result<FaceMesh> {

@@ -25,11 +25,11 @@ use crate::mesh::tri::build::{NodePlacement, Task, initial_triangulation};
 use crate::mesh::tri::graded_size::GradedSize;
 use crate::mesh::tri::limit_table::LimitTable;
 use crate::mesh::tri::longest::longest_side;
+use crate::mesh::tri::no_mesh::{NoMesh, Outcome};
 use crate::mesh::tri::optimize::MeshOptimizer;
 use crate::mesh::tri::optimize_settings::FIT;
 use crate::mesh::tri::triangle_fit::FaceFit;
 use crate::mesh::tri::triangulation::Triangulation;
-use crate::mesh::tri::trouble::{Outcome, Trouble};
 
 /// The fit of nets of one face to its limits.
 pub(crate) struct NetFit<'a> {
@@ -52,7 +52,7 @@ impl NetFit<'_> {
         for round in 0..NET_FIT.max_tries {
             let mut net = match self.net(field, job)? {
                 Ok(net) => net,
-                Err(trouble) => return Ok(Err(trouble)),
+                Err(reason) => return Ok(Err(reason)),
             };
             let mut ratios = LimitTable::default();
             if field.background.is_some() {
@@ -78,8 +78,8 @@ impl NetFit<'_> {
         }
         let setting = plan.limit(worst.limit);
         let reached = worst.over * setting.map_or(self.fit.face.size.0, |s| s.0);
-        let (says, surface) = (setting.map_or(plan.origin, |s| s.1), self.fit.surface.origin());
-        Err(SizeFault::NotReached { limit: worst.limit, says, surface, reached, at: worst.at }.into())
+        let (written_at, surface) = (setting.map_or(plan.origin, |s| s.1), self.fit.surface.origin());
+        Err(SizeFault::NotReached { limit: worst.limit, written_at, surface, reached, at: worst.at }.into())
     }
 
     /// One net for these lengths, with a work budget of its own by its number of elements.
@@ -96,7 +96,7 @@ impl NetFit<'_> {
         let task = Task { chart_surface, field: cells, outline, settings: self.fit.settings, lattice, most, limit_check: None };
         let triangulation = match initial_triangulation(&task, job)? {
             Ok(triangulation) => triangulation,
-            Err(trouble) => return Ok(Err(trouble)),
+            Err(reason) => return Ok(Err(reason)),
         };
         allow(NET_FIT.element_work * if quads { 2 } else { 1 } * triangulation.tri.len() as u64, &mut 0);
         let mut optimizer = MeshOptimizer::new(triangulation, chart_surface, cells, self.fit.settings);
@@ -116,7 +116,7 @@ impl NetFit<'_> {
             Swapper::new(&mut net).swap();
             debug_assert_eq!(net.check(), Ok(()));
             self.smooth(&mut net, cells, job)?;
-            let Some(whole) = whole_sides(&net) else { return Ok(Err(Trouble::Odd)) };
+            let Some(whole) = whole_sides(&net) else { return Ok(Err(NoMesh::Odd)) };
             self.narrow_rows(&mut net, &whole, cells, job)?;
             net = split(&net, &whole, chart_surface, wanted);
             self.smooth(&mut net, wanted, job)?;

@@ -24,9 +24,9 @@ use crate::mesh::request::methods::Elements;
 use crate::mesh::request::sources::Sources;
 use crate::mesh::tri::graded_size::{Background, GradedSize};
 use crate::mesh::tri::longest::Longest;
+use crate::mesh::tri::no_mesh::{NoMesh, Outcome, fault};
 use crate::mesh::tri::optimize::OptimizeSettings;
 use crate::mesh::tri::triangle_fit::{FaceFit, near};
-use crate::mesh::tri::trouble::{Outcome, Trouble, fault};
 
 /// Makes the face.
 pub(crate) fn prepare(
@@ -41,9 +41,9 @@ pub(crate) fn prepare(
         Elements::Quads => halved(face_input, face, &border, outline),
         _ => Some(Halves::whole(outline, &border.ids)),
     };
-    let Some(halves) = halves else { return Err(fault(face_input, face, &border, Trouble::Border(PointsFault::Same(0, 0)))) };
+    let Some(halves) = halves else { return Err(fault(face_input, face, &border, NoMesh::Border(PointsFault::Same(0, 0)))) };
     let fitted = fitted_net(face_input, face, chart, outline, &halves, job)?;
-    let FittedNet { net, deciders } = fitted.map_err(|trouble| fault(face_input, face, &border, of_whole(&halves, trouble)))?;
+    let FittedNet { net, deciders } = fitted.map_err(|reason| fault(face_input, face, &border, of_whole(&halves, reason)))?;
     let fixed = net.fixed as usize;
     let mut uv = border.uv;
     uv.extend(net.xy[fixed..].iter().map(|xy| chart.uv(*xy)));
@@ -58,12 +58,12 @@ pub(crate) fn prepare(
     Ok(prepared(face_input, face, free, border.ids, FreeInside { points, loops: border.edges, deciders, tally: None }))
 }
 
-/// A trouble by nodes of the whole border.
-fn of_whole(halves: &Halves, trouble: Trouble) -> Trouble {
+/// The reason with nodes of the whole border.
+fn of_whole(halves: &Halves, reason: NoMesh) -> NoMesh {
     let node = |n: u32| halves.of.get(n as usize).copied().unwrap_or(0);
-    match trouble {
-        Trouble::Border(PointsFault::Crosses(a, b)) => Trouble::Border(PointsFault::Crosses(node(a), node(b))),
-        Trouble::Border(PointsFault::Same(a, b)) => Trouble::Border(PointsFault::Same(node(a), node(b))),
+    match reason {
+        NoMesh::Border(PointsFault::Crosses(a, b)) => NoMesh::Border(PointsFault::Crosses(node(a), node(b))),
+        NoMesh::Border(PointsFault::Same(a, b)) => NoMesh::Border(PointsFault::Same(node(a), node(b))),
         other => other,
     }
 }

@@ -1,6 +1,6 @@
 //! The settings of a mesh, each declared once: its word, its type, what it takes, its range, its default and its documentation.
 //!
-//! From a declaration come the field that holds what is written, with the expression that says it, how it is read, its part in the key of
+//! From a declaration come the field that holds what is written, with the expression in which it is written, how it is read, its part in the key of
 //! a kept mesh, and all that the language, its editors, the reference and goldens show of it. A new setting is a new line here, and the code
 //! that acts on it, to which the line has a link.
 
@@ -8,7 +8,7 @@ use super::methods::{Elements, Method};
 use crate::base::digest::{StableHash, StableHasher};
 use crate::base::origin::Origin;
 
-/// A setting with the expression that says it; `None` where it is not written.
+/// A setting with the expression in which it is written; `None` where it is not written.
 pub type Located<T> = Option<(T, Origin)>;
 
 /// What a setting takes.
@@ -96,7 +96,7 @@ pub trait Settings: Default {
     const DECLARED: &'static [Declared];
 
     /// Takes what is written; whether there is such a setting of such a type.
-    fn set(&mut self, word: &str, given: Given<'_>, says: Origin) -> bool;
+    fn set(&mut self, word: &str, given: Given<'_>, written_at: Origin) -> bool;
 
     /// What is written, in the order of [`Settings::DECLARED`].
     fn written(&self) -> impl Iterator<Item = (&'static Declared, Given<'static>, Origin)>;
@@ -148,10 +148,10 @@ macro_rules! mesh_settings {
                 },)*
             ];
 
-            fn set(&mut self, word: &str, given: Given<'_>, says: Origin) -> bool {
+            fn set(&mut self, word: &str, given: Given<'_>, written_at: Origin) -> bool {
                 match word {
                     $(stringify!($word) => {
-                        self.$word = SettingValue::of(given).map(|value| (value, says));
+                        self.$word = SettingValue::of(given).map(|value| (value, written_at));
                         self.$word.is_some()
                     })*
                     _ => false,
@@ -159,8 +159,8 @@ macro_rules! mesh_settings {
             }
 
             fn written(&self) -> impl Iterator<Item = (&'static Declared, Given<'static>, Origin)> {
-                let all = [$(self.$word.map(|(value, says)| (value.given(), says)),)*];
-                Self::DECLARED.iter().zip(all).filter_map(|(declared, written)| written.map(|(given, says)| (declared, given, says)))
+                let all = [$(self.$word.map(|(value, written_at)| (value.given(), written_at)),)*];
+                Self::DECLARED.iter().zip(all).filter_map(|(declared, written)| written.map(|(given, written_at)| (declared, given, written_at)))
             }
         }
 
@@ -270,10 +270,10 @@ mod tests {
     #[test]
     fn what_is_written_is_listed_and_keyed() {
         let mut settings = MeshSettings::default();
-        let says = Origin(7);
-        assert!(settings.set("size", Given::Number(2.5), says) && settings.set("method", Given::Word("isoline"), says));
-        assert!(settings.set("order", Given::Number(2.0), says) && settings.set("flip", Given::Flag(true), says));
-        assert!(!settings.set("sise", Given::Number(1.0), says) && !settings.set("elements", Given::Word("hexahedra"), says));
+        let written_at = Origin(7);
+        assert!(settings.set("size", Given::Number(2.5), written_at) && settings.set("method", Given::Word("isoline"), written_at));
+        assert!(settings.set("order", Given::Number(2.0), written_at) && settings.set("flip", Given::Flag(true), written_at));
+        assert!(!settings.set("sise", Given::Number(1.0), written_at) && !settings.set("elements", Given::Word("hexahedra"), written_at));
         let written: Vec<_> = settings.written().map(|(declared, given, _)| (declared.word, given)).collect();
         let wanted = [("size", Given::Number(2.5)), ("order", Given::Number(2.0)), ("method", Given::Word("isoline"))];
         assert_eq!(written[..3], wanted);
@@ -288,7 +288,7 @@ mod tests {
                 Takes::Word(words) => Given::Word(words[0]),
                 _ => Given::Number(2.0),
             };
-            assert!(one.set(declared.word, given, says), "{}", declared.word);
+            assert!(one.set(declared.word, given, written_at), "{}", declared.word);
             assert_ne!(key(&one), plain, "{}", declared.word);
         }
     }

@@ -73,8 +73,8 @@ fn sources_of(refine: &Refine, tag: u32) -> Vec<Source> {
 /// E707: a limit demands elements of a size below the floor.
 pub fn floor_keeps(input: &Input, needed: f64, at: DVec3) -> Fault {
     let plan = input.plan;
-    let (limit, says) = plan.bend_limit().unwrap_or((MeshLimit::Size, plan.origin));
-    SizeFault::FloorKeeps { limit, says, floor: plan.settings.min_size.unwrap_or((needed, plan.origin)), needed, at }.into()
+    let (limit, written_at) = plan.bend_limit().unwrap_or((MeshLimit::Size, plan.origin));
+    SizeFault::FloorKeeps { limit, written_at, floor: plan.settings.min_size.unwrap_or((needed, plan.origin)), needed, at }.into()
 }
 
 /// The least length that sources want on a patch, within 2 % of itself, where that is below `most`: rectangles

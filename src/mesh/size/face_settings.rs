@@ -20,9 +20,9 @@ pub fn apply_rules(input: &Input, layout: &mut Layout, size: f64, effects: &mut 
         own.sort_by_key(|(alone, index, _)| (*alone, *index));
         let alone = |index: usize| matches!(input.plan.rules[index].target, Target::Patches(_));
         for (_, index, rule) in own {
-            let says = [rule.settings.size.is_some(), rule.settings.elements.is_some(), rule.settings.method.is_some()];
+            let written = [rule.settings.size.is_some(), rule.settings.elements.is_some(), rule.settings.method.is_some()];
             for (k, key) in ["size", "elements", "method"].into_iter().enumerate() {
-                if says[k]
+                if written[k]
                     && let Some(old) = last[k].replace(index)
                     && alone(old) == alone(index)
                 {

@@ -95,13 +95,13 @@ fn is_off(input: &Input, own: &Face, surface: &Surface) -> bool {
 
 /// E703 where an edge is glued so far beside a face that nothing is left of the chord error.
 pub fn refuse(input: &Input, layout: &Layout, limits: &Limits, rows: &[Vec<SegmentBeside>]) -> Result<()> {
-    let (Some(limit), Some((_, says))) = (limits.chord, input.plan.settings.chord_error) else { return Ok(()) };
+    let (Some(limit), Some((_, written_at))) = (limits.chord, input.plan.settings.chord_error) else { return Ok(()) };
     for (face, rows) in layout.faces.iter().zip(rows) {
         let surface = &input.model.surfaces[face.surface.index()].surface;
         let all = rows.iter().filter(|_| is_off(input, face, surface)).flat_map(|row| row.off.iter().zip(&row.points));
         let (gap, at) = all.fold((0.0, DVec3::ZERO), |found, (gap, at)| if *gap > found.0 { (*gap, *at) } else { found });
         if gap > limit * (1.0 - MIN_LEFT_SHARE) {
-            return Err(SizeFault::GapTooWide { gap, limit: (limit, says), surface: surface.origin(), at }.into());
+            return Err(SizeFault::GapTooWide { gap, limit: (limit, written_at), surface: surface.origin(), at }.into());
         }
     }
     Ok(())

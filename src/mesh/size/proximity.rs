@@ -1,6 +1,6 @@
 //! Narrow places of free faces: where borders, divided into steps, cross, or face each other over less than a step.
 //!
-//! The divided border of a face is triangulated in its geometry. Where steps cross, they are halved until they do not; where a
+//! The divided border of a face is triangulated in its chart. Where steps cross, they are halved until they do not; where a
 //! node stands nearer over a step than half of it is long, a triangle between them must have a small angle, and steps are
 //! shortened there: the distance of the borders is the local feature size of the face [Ruppert 1995]. What a corner of the
 //! border makes narrow is left: shorter steps make its triangles no better.
@@ -302,7 +302,7 @@ impl ProximityScan<'_> {
     }
 }
 
-/// Whether two edges of the geometry have more in common than an end.
+/// Whether two edges in the chart have more in common than an end.
 fn meet(xy: &[glam::DVec2], one: [u32; 2], other: [u32; 2]) -> bool {
     let [a, b] = one.map(|n| xy[n as usize]);
     let [c, d] = other.map(|n| xy[n as usize]);

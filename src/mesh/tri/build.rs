@@ -10,12 +10,12 @@ use crate::mesh::chart::outline::{Outline, inside};
 use crate::mesh::chart::parametric_surface::{ParametricSurface, SizeField};
 use crate::mesh::request::plan::TALL;
 use crate::mesh::tri::front::{FrontInput, LatticeCell, STRAIGHT, grow};
+use crate::mesh::tri::no_mesh::{NoMesh, Outcome};
 use crate::mesh::tri::optimize::{LimitCheck, MeshOptimizer, OptimizeSettings};
 use crate::mesh::tri::optimize_settings::REPAIR;
 use crate::mesh::tri::placement_settings::ESTIMATE;
 use crate::mesh::tri::quadtree::{self, TreeFace};
 use crate::mesh::tri::triangulation::Triangulation;
-use crate::mesh::tri::trouble::{Outcome, Trouble};
 
 /// Where inner nodes come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,7 +58,7 @@ pub struct Triangulated {
 pub fn triangulate(task: &Task, job: &Job) -> Outcome<Triangulated> {
     let triangulation = match initial_triangulation(task, job)? {
         Ok(triangulation) => triangulation,
-        Err(trouble) => return Ok(Err(trouble)),
+        Err(reason) => return Ok(Err(reason)),
     };
     let mut optimizer = MeshOptimizer::new(triangulation, task.chart_surface, task.field, task.settings);
     optimizer.settle();
@@ -85,14 +85,14 @@ pub fn initial_triangulation(task: &Task, job: &Job) -> Outcome<Triangulation> {
     let edges: Vec<[u32; 2]> = outline.edges().collect();
     let coarse = match points(&outline.xy, &edges) {
         Ok(triangles) => triangles,
-        Err(fault) => return Ok(Err(Trouble::Border(fault))),
+        Err(fault) => return Ok(Err(NoMesh::Border(fault))),
     };
     let kept = inside(&coarse, outline);
     if !kept.contains(&true) {
-        return Ok(Err(Trouble::Empty));
+        return Ok(Err(NoMesh::Empty));
     }
     if expected(task, &coarse, &kept) > task.most as f64 {
-        return Ok(Err(Trouble::Full));
+        return Ok(Err(NoMesh::TooManyNodes));
     }
     let grown = match task.lattice {
         NodePlacement::Triangles | NodePlacement::Squares => {
@@ -103,19 +103,19 @@ pub fn initial_triangulation(task: &Task, job: &Job) -> Outcome<Triangulation> {
         NodePlacement::Tree => {
             match quadtree::nodes(&TreeFace { chart_surface: task.chart_surface, field: task.field, outline, most: task.most }) {
                 Ok(grown) => grown,
-                Err(trouble) => return Ok(Err(trouble)),
+                Err(reason) => return Ok(Err(reason)),
             }
         }
     };
     if grown.full {
-        return Ok(Err(Trouble::Full));
+        return Ok(Err(NoMesh::TooManyNodes));
     }
     job.go_on()?;
     let mut xy = outline.xy.clone();
     xy.extend(&grown.xy);
     let all = match points(&xy, &edges) {
         Ok(triangles) => triangles,
-        Err(fault) => return Ok(Err(Trouble::Border(fault))),
+        Err(fault) => return Ok(Err(NoMesh::Border(fault))),
     };
     job.go_on()?;
     let kept = inside(&all, outline);

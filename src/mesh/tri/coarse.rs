@@ -13,9 +13,9 @@ use crate::mesh::request::work::allow;
 use crate::mesh::tri::coarsen::Coarsener;
 use crate::mesh::tri::isoline_mesh::{Failure, IsolineInput, mesh_isolines};
 use crate::mesh::tri::limit_table;
+use crate::mesh::tri::no_mesh::{NoMesh, Outcome};
 use crate::mesh::tri::triangle_fit::{FaceFit, FittedFace};
 use crate::mesh::tri::triangulation::Triangulation;
-use crate::mesh::tri::trouble::{Outcome, Trouble};
 
 /// Quality below which sides are flipped: that of a right angle beside one of 15°.
 const MIN_UNFLIPPED_QUALITY: f64 = 0.4;
@@ -43,8 +43,8 @@ impl FaceFit<'_> {
         };
         match mesh_isolines(&input, job)? {
             Ok(mesh) => Ok(Ok(FittedFace { triangulation: mesh.triangulation, deciders: mesh.deciders, tally: Some(mesh.tally) })),
-            Err(Failure::Trouble(Trouble::Full)) if limits.chord.or(limits.angle).is_some() => Err(self.too_many_for_limits()),
-            Err(Failure::Trouble(trouble)) => Ok(Err(trouble)),
+            Err(Failure::NoMesh(NoMesh::TooManyNodes)) if limits.chord.or(limits.angle).is_some() => Err(self.too_many_for_limits()),
+            Err(Failure::NoMesh(reason)) => Ok(Err(reason)),
             Err(Failure::Floor(needed, at)) => Err(floor_keeps(self.face_input.input, needed, at)),
             Err(Failure::Missed(ratio, at)) => {
                 let (limit, setting, over) = match (plan.settings.chord_error, plan.settings.angle_error) {
@@ -52,7 +52,8 @@ impl FaceFit<'_> {
                     (_, Some(setting)) => (MeshLimit::AngleError, setting, ratio.angle),
                     _ => (MeshLimit::Size, plan.settings.size.unwrap_or((self.face.size.0, plan.origin)), 1.0),
                 };
-                Err(SizeFault::NotReached { limit, says: setting.1, surface: self.surface.origin(), reached: over * setting.0, at }.into())
+                Err(SizeFault::NotReached { limit, written_at: setting.1, surface: self.surface.origin(), reached: over * setting.0, at }
+                    .into())
             }
         }
     }

@@ -12,7 +12,7 @@ const EQUAL_ERROR_RATIO: f64 = 0.99;
 /// The triangles of a cell, by the places of their corners in its polygon, and the worst error among them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Filling {
-    /// CellCorners, counter-clockwise.
+    /// Corners, counter-clockwise.
     pub triangles: Vec<[usize; 3]>,
     /// The worst error over the limit.
     pub ratio: f64,

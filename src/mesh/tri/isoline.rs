@@ -1,4 +1,4 @@
-//! IsolineCells between lines of constant u and v: boxes halved by one direction at a time, each only where it has to be.
+//! Cells between lines of constant u and v: boxes halved by one direction at a time, each only where it has to be.
 //!
 //! Lines that run through all of a face would be needed everywhere for one place that demands them; cells are halved alone, and
 //! fine cells meet coarse ones node to node [Piegl & Tiller 1998]. A cut starts where one beyond

@@ -24,10 +24,10 @@ use crate::mesh::tri::isoline::{Cut, IsolineCells};
 use crate::mesh::tri::isoline_mesh::beside::sorted;
 use crate::mesh::tri::isoline_mesh::corners::{CellCorners, polygon};
 use crate::mesh::tri::limit_table::{self, LimitRatios, Normals};
+use crate::mesh::tri::no_mesh::NoMesh;
 use crate::mesh::tri::placement_settings::ISOLINES;
 use crate::mesh::tri::tree::Class;
 use crate::mesh::tri::triangulation::Triangulation;
-use crate::mesh::tri::trouble::Trouble;
 
 /// A face to be triangulated between isolines.
 pub struct IsolineInput<'a> {
@@ -53,7 +53,7 @@ pub struct IsolineInput<'a> {
 #[derive(Clone, Copy, Debug)]
 pub enum Failure {
     /// One of any method.
-    Trouble(Trouble),
+    NoMesh(NoMesh),
     /// A limit demands a length below the floor: that length, and where.
     Floor(f64, DVec3),
     /// A limit is not kept: the ratios, and where.
@@ -165,7 +165,7 @@ impl IsolineMesher<'_> {
             }
         }
         if triangulation.p.len() > self.input.most {
-            return Err(Failure::Trouble(Trouble::Full));
+            return Err(Failure::NoMesh(NoMesh::TooManyNodes));
         }
         let (sure, bad) = self.whole(&corners, &triangulation);
         if !bad.is_empty() {

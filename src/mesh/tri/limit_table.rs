@@ -22,7 +22,7 @@ const BATCH_SIZE: usize = 1024;
 /// Bounds of a triangle over its limits: a limit is kept up to 1.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LimitRatios {
-    /// TriangleBound of the chord error over the limit.
+    /// Bound of the chord error over the limit.
     pub chord: f64,
     /// Turn of the normal over the limit.
     pub angle: f64,

@@ -1,7 +1,7 @@
 //! The marks 0, 1 and 2 at the corners of a cell that a loop crosses [Jeong & Park 2000, §3.1.2].
 //!
 //! Travelling along a loop with what is kept on the right, at each crossing of a side the corner at its right end is 2, and
-//! the one at the right end of the opposite side one more unless it is 2. CellCorners with 2 are kept. The marks see nothing of a
+//! the one at the right end of the opposite side one more unless it is 2. Corners with 2 are kept. The marks see nothing of a
 //! loop inside one cell, and lose kept corners where a loop leaves by the side it came in by: what is kept is decided by the
 //! winding, and the summary of the mesh has the number of corners at which the marks agree.
 
@@ -9,7 +9,7 @@ use glam::DVec2;
 
 use crate::base::predicates::orient;
 
-/// CellCorners of a box: lower left, lower right, upper right, upper left.
+/// Corners of a box: lower left, lower right, upper right, upper left.
 pub fn corners((low, high): (DVec2, DVec2)) -> [DVec2; 4] {
     [low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y)]
 }

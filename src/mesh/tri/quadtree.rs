@@ -11,10 +11,10 @@ use crate::base::tolerance::ON_EDGE;
 use crate::mesh::chart::outline::Outline;
 use crate::mesh::chart::parametric_surface::{ParametricSurface, SizeField};
 use crate::mesh::tri::front::{PlacedNodes, apart, samples};
+use crate::mesh::tri::no_mesh::NoMesh;
 use crate::mesh::tri::placement_settings::{FRONT, QUADTREE};
 use crate::mesh::tri::point_hash::PointHash;
 use crate::mesh::tri::tree::{Class, Halt, Tree, TreeCell};
-use crate::mesh::tri::trouble::Trouble;
 
 /// The face of a tree.
 pub struct TreeFace<'a> {
@@ -31,7 +31,7 @@ pub struct TreeFace<'a> {
 /// The nodes of a balanced tree.
 ///
 /// Fails where there are more cells than four for each node allowed, or cells had to be smaller than the deepest ones.
-pub fn nodes(task: &TreeFace) -> Result<PlacedNodes, Trouble> {
+pub fn nodes(task: &TreeFace) -> Result<PlacedNodes, NoMesh> {
     let outline = task.outline;
     let segments: Vec<[DVec2; 2]> = outline.edges().map(|e| e.map(|n| outline.xy[n as usize])).collect();
     // At a pole the chart has an edge that is a point in space: no cell can be as short as that.
@@ -52,8 +52,8 @@ pub fn nodes(task: &TreeFace) -> Result<PlacedNodes, Trouble> {
     if let Err(halt) = tree.refine(&needs_split, 4 * task.most) {
         let cell = |k: u32| &tree.cells()[k as usize];
         return Err(match halt {
-            Halt::Full => Trouble::Full,
-            Halt::Deep(k) => Trouble::Deep(span(task.chart_surface, &tree, cell(k)).2),
+            Halt::Full => NoMesh::TooManyNodes,
+            Halt::Deep(k) => NoMesh::TreeTooDeep(span(task.chart_surface, &tree, cell(k)).2),
         });
     }
     tree.balance();

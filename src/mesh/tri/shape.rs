@@ -160,8 +160,8 @@ impl PatchRim {
     /// Steps towards the mean of the tips that the sides demand, weighted by how bad they are.
     fn climb(&mut self, chart_surface: &dyn ParametricSurface, mut star: Star) -> Star {
         let from = star.xy;
-        let near = chart_surface.near(from);
-        let mut spot = near.spot(DVec2::ZERO);
+        let expansion = chart_surface.expansion(from);
+        let mut spot = expansion.spot(DVec2::ZERO);
         let mut demand = self.demand(star.p);
         let mut share = 1.0;
         for _ in 0..STAR_SEARCH.max_steps {
@@ -171,7 +171,7 @@ impl PatchRim {
             }
             let Some(way) = spot.step(step) else { break };
             let xy = chart_surface.clamp(star.xy + way);
-            let new = near.spot(xy - from);
+            let new = expansion.spot(xy - from);
             let worst = self.worst(xy, new.p);
             if worst > star.worst + STAR_SEARCH.min_gain {
                 star = Star { p: new.p, xy, worst };

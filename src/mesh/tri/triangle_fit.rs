@@ -26,10 +26,10 @@ use crate::mesh::tri::build::{NodePlacement, Task, expected_nodes, triangulate};
 use crate::mesh::tri::graded_size::{Background, GradedSize};
 use crate::mesh::tri::limit_table::{LimitTable, ratio};
 use crate::mesh::tri::longest::{Longest, longest_side};
+use crate::mesh::tri::no_mesh::{NoMesh, Outcome};
 use crate::mesh::tri::optimize::{LimitCheck, OptimizeSettings};
 use crate::mesh::tri::optimize_settings::{BENT_FACE, EVEN_FACE, FIT, GRADED_FACE, TREE_FACE};
 use crate::mesh::tri::triangulation::Triangulation;
-use crate::mesh::tri::trouble::{Outcome, Trouble};
 use crate::surface::Surface;
 
 /// The tag of the edges of a border among sources.
@@ -98,7 +98,7 @@ pub(crate) fn fitted(face_input: &FaceInput, face: &Face, chart: &Chart, outline
     let mut field = GradedSize { sources: &sources, range: (face.size.0, face_input.wanted.written), spacing: SPACING, background };
     fit.refuse_large(&field)?;
     let triangulation = if bent { fit.bent(&mut field, job)? } else { fit.even(&mut field, job)? };
-    if matches!(triangulation, Err(Trouble::Full)) {
+    if matches!(triangulation, Err(NoMesh::TooManyNodes)) {
         return Err(fit.too_large(&field, None));
     }
     Ok(triangulation.map(|triangulation| {
@@ -251,9 +251,9 @@ impl FaceFit<'_> {
             }
         }
         let plan = self.face_input.input.plan;
-        let (says, at) = (plan.size_origin(), self.outline.p[0]);
+        let (written_at, at) = (plan.size_origin(), self.outline.p[0]);
         let reached = self.longest.inside;
-        Err(SizeFault::NotReached { limit: MeshLimit::Size, says, surface: self.surface.origin(), reached, at }.into())
+        Err(SizeFault::NotReached { limit: MeshLimit::Size, written_at, surface: self.surface.origin(), reached, at }.into())
     }
 
     /// Lengths by the bends at first, smaller where a triangle exceeds a limit.
@@ -267,7 +267,7 @@ impl FaceFit<'_> {
                 // Below a floor limits may be exceeded: `lower` reports that.
                 Ok(result) if result.keeps_limits && floor == 0.0 => return Ok(Ok(result.triangulation)),
                 Ok(result) => result.triangulation,
-                Err(trouble) => return Ok(Err(trouble)),
+                Err(reason) => return Ok(Err(reason)),
             };
             worst = self.lower(field, &triangulation, &mut ratios.borrow_mut())?;
             if worst.0 == 0.0 {
@@ -280,10 +280,10 @@ impl FaceFit<'_> {
         }
         let (limit, at) = (worst.2, worst.1);
         let plan = self.face_input.input.plan;
-        let says = plan.limit(limit);
-        let reached = if limit == MeshLimit::Size { self.longest.inside } else { worst.0 * says.map_or(0.0, |s| s.0) };
-        let says = says.map_or(plan.origin, |s| s.1);
-        Err(SizeFault::NotReached { limit, says, surface: self.surface.origin(), reached, at }.into())
+        let written_at = plan.limit(limit);
+        let reached = if limit == MeshLimit::Size { self.longest.inside } else { worst.0 * written_at.map_or(0.0, |s| s.0) };
+        let written_at = written_at.map_or(plan.origin, |s| s.1);
+        Err(SizeFault::NotReached { limit, written_at, surface: self.surface.origin(), reached, at }.into())
     }
 
     /// Lowers lengths where triangles exceed a limit; the worst of them with its place and the limit.

@@ -25,7 +25,7 @@ pub struct Triangulation {
     pub size: Vec<f64>,
     /// Number of border nodes.
     pub fixed: u32,
-    /// CellCorners, counter-clockwise in the chart; a dead triangle has three times the same.
+    /// Corners, counter-clockwise in the chart; a dead triangle has three times the same.
     pub tri: Vec<[u32; 3]>,
     /// Triangle across the side opposite each corner.
     pub across: Vec<[u32; 3]>,

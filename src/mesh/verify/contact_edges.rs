@@ -94,7 +94,7 @@ fn on_segment(scan: &Scan, task: EdgeFace, place: SegmentPlace, way: &Chain, fou
     let mut met = Met { known: (known, slow), ..Met::default() };
     for m in found {
         let here = s(m.f);
-        match m.shared_to.map(s) {
+        match m.overlap_end.map(s) {
             Some(there) => {
                 let (low, high) = (here.min(there).max(first), here.max(there).min(last));
                 if high - low > near {

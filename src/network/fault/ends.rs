@@ -49,7 +49,7 @@ pub enum EndFault {
         b: CurveEnd,
         /// The snap distance.
         snap: f64,
-        /// The expression that says it.
+        /// The expression in which it is written.
         asked: Origin,
         /// The curve of them that stays since others are made from it.
         settled: Option<Origin>,
@@ -62,7 +62,7 @@ pub enum EndFault {
         to: DVec3,
         /// Length of its curve, model units.
         length: f64,
-        /// The expression that says the distance.
+        /// The expression in which the distance is written.
         asked: Origin,
     },
     /// W514: an end misses a curve by little more than the tolerance.

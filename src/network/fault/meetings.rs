@@ -41,19 +41,19 @@ pub enum MeetingFault {
         /// Points and arc-length fractions on the first curve.
         candidates: Vec<(DVec3, f64)>,
     },
-    /// E509: two curves share a run where a point is wanted.
-    SharesRun {
+    /// E509: two curves overlap where a point is wanted.
+    Overlap {
         /// First curve.
         a: Origin,
         /// Second curve.
         b: Origin,
-        /// Ends of the runs.
-        runs: Vec<(DVec3, DVec3)>,
+        /// Ends of the overlaps.
+        overlaps: Vec<(DVec3, DVec3)>,
     },
 }
 
 impl Describe for MeetingFault {
-    codes! { NoMeeting "E507", PointOff "E507", SeveralMeetings "E508", SharesRun "E509" }
+    codes! { NoMeeting "E507", PointOff "E507", SeveralMeetings "E508", Overlap "E509" }
 
     fn describe(&self, say: &dyn Say) -> Report {
         match self {
@@ -66,7 +66,7 @@ impl Describe for MeetingFault {
                     .note(tolerance_note(say, *tolerance))
             }
             Self::SeveralMeetings { a, b, candidates } => several_meetings(*a, *b, candidates, say),
-            Self::SharesRun { a, b, runs } => shares_run(*a, *b, runs, say),
+            Self::Overlap { a, b, overlaps } => overlap(*a, *b, overlaps, say),
         }
     }
 }
@@ -106,12 +106,12 @@ fn several_meetings(a: Origin, b: Origin, candidates: &[(DVec3, f64)], say: &dyn
     }
 }
 
-fn shares_run(a: Origin, b: Origin, runs: &[(DVec3, DVec3)], say: &dyn Say) -> Report {
-    let run = |(p, q): &(DVec3, DVec3)| {
+fn overlap(a: Origin, b: Origin, overlaps: &[(DVec3, DVec3)], say: &dyn Say) -> Report {
+    let ends = |(p, q): &(DVec3, DVec3)| {
         let (from, to) = say.pair(*p, *q);
         format!("from {from} to {to}")
     };
-    let list: Vec<String> = runs.iter().map(run).collect();
+    let list: Vec<String> = overlaps.iter().map(ends).collect();
     Report::new(format!(
         "{} and {} share a run {}, not a point",
         say.quoted(a, "one curve"),

@@ -166,7 +166,7 @@ struct Pairing<'l> {
 }
 
 impl Pairing<'_> {
-    fn marry(&mut self, a: usize, b: usize) {
+    fn pair_up(&mut self, a: usize, b: usize) {
         self.partner[a] = Some(b);
         self.matched[b] = true;
     }
@@ -181,15 +181,15 @@ impl Pairing<'_> {
             if kind.is_empty() {
                 continue;
             }
-            let mut lonely = Vec::new();
+            let mut unmatched = Vec::new();
             for a in olds {
                 match rest.iter().position(|b| same(&self.old[a], &self.new[*b], self.allowance)) {
-                    Some(at) => self.marry(a, rest.remove(at)),
-                    None => lonely.push(a),
+                    Some(at) => self.pair_up(a, rest.remove(at)),
+                    None => unmatched.push(a),
                 }
             }
             if only == Only::Any {
-                lonely.into_iter().zip(rest).for_each(|(a, b)| self.marry(a, b));
+                unmatched.into_iter().zip(rest).for_each(|(a, b)| self.pair_up(a, b));
             }
         }
     }
@@ -200,7 +200,7 @@ impl Pairing<'_> {
         for a in self.free_old() {
             let b = (0..self.new.len()).find(|b| !self.matched[*b] && same(&self.old[a], &self.new[*b]));
             if let Some(b) = b {
-                self.marry(a, b);
+                self.pair_up(a, b);
                 found.insert(a);
             }
         }

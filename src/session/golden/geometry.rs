@@ -125,8 +125,8 @@ impl Shape {
 
 /// What differs by more than `within`, in words; lengths are in `unit`.
 pub fn differs(old: &Shape, new: &Shape, within: f64, unit: &str) -> Option<String> {
-    let Matched { partner, lonely_old, lonely_new } = matched(old, new, within);
-    if lonely_old.is_empty() && lonely_new.is_empty() {
+    let Matched { partner, unmatched_old, unmatched_new } = matched(old, new, within);
+    if unmatched_old.is_empty() && unmatched_new.is_empty() {
         return cells_differ(old, new, &partner, unit);
     }
     if old.nodes.len() == new.nodes.len() && old.elements == new.elements {
@@ -134,8 +134,8 @@ pub fn differs(old: &Shape, new: &Shape, within: f64, unit: &str) -> Option<Stri
         let moved = old.nodes.iter().zip(&new.nodes).map(|(a, b)| (a.distance(*b), *b));
         return said_moved(&moved.filter(|m| m.0 > within).collect::<Vec<_>>(), within, unit);
     }
-    let gone: Vec<DVec3> = lonely_old.iter().map(|n| old.nodes[*n]).collect();
-    let come: Vec<DVec3> = lonely_new.iter().map(|n| new.nodes[*n]).collect();
+    let gone: Vec<DVec3> = unmatched_old.iter().map(|n| old.nodes[*n]).collect();
+    let come: Vec<DVec3> = unmatched_new.iter().map(|n| new.nodes[*n]).collect();
     if gone.len() == come.len() && old.nodes.len() == new.nodes.len() && old.elements.len() == new.elements.len() {
         let points: Vec<[DVec3; 3]> = gone.iter().map(|p| [*p; 3]).collect();
         let near = Near::new(&points);
@@ -183,8 +183,8 @@ fn place(p: DVec3) -> String {
 /// Which new node each old one is.
 struct Matched {
     partner: Vec<u32>,
-    lonely_old: Vec<usize>,
-    lonely_new: Vec<usize>,
+    unmatched_old: Vec<usize>,
+    unmatched_new: Vec<usize>,
 }
 
 /// Nodes at one place within `within`, the nearest pairs first.
@@ -209,12 +209,12 @@ fn matched(old: &Shape, new: &Shape, within: f64) -> Matched {
             matched[m] = true;
         }
     }
-    let lonely_old = (0..partner.len()).filter(|k| partner[*k] == u32::MAX).collect();
-    let lonely_new = (0..matched.len()).filter(|m| !matched[*m]).collect();
-    Matched { partner, lonely_old, lonely_new }
+    let unmatched_old = (0..partner.len()).filter(|k| partner[*k] == u32::MAX).collect();
+    let unmatched_new = (0..matched.len()).filter(|m| !matched[*m]).collect();
+    Matched { partner, unmatched_old, unmatched_new }
 }
 
-/// A element that begins at its smallest number; an open one at its smaller end.
+/// An element that begins at its smallest number; an open one at its smaller end.
 fn canonical(element: &Element, number: impl Fn(u32) -> u32) -> Element {
     let mut nodes: Vec<u32> = element.nodes.iter().map(|n| number(*n)).collect();
     if element.closed {

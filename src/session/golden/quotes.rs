@@ -30,7 +30,7 @@ pub fn quoted(text: &str) -> String {
     out
 }
 
-/// Bytes up to behind the closing quote of a text that begins with one.
+/// Length in bytes, closing quote included, of the quoted text at the beginning.
 pub fn end_of_quote(text: &str) -> Option<usize> {
     let mut escaped = false;
     for (at, c) in text.char_indices().skip(1) {
@@ -43,7 +43,7 @@ pub fn end_of_quote(text: &str) -> Option<usize> {
     None
 }
 
-/// The text between quotes.
+/// The text between quotes; the error is what was expected.
 pub fn unquoted(text: &str) -> Result<String, String> {
     let inside = match end_of_quote(text) {
         Some(end) if end == text.len() && end >= 2 => &text[1..end - 1],

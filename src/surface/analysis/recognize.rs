@@ -96,8 +96,8 @@ fn sphere(feet: &[Foot], near: f64) -> Option<SimpleForm> {
     let radius = radius.abs();
     let fits = |f: &Foot| ((f.p - center).length() - radius).abs() <= near;
     // One arc of normals leaves the centre open.
-    let enclosure = widest(feet.iter().map(|f| f.n))?;
-    (feet.iter().all(fits) && feet.iter().any(|f| f.n.dot(enclosure).abs() > FLAT)).then_some(SimpleForm::Sphere { radius })
+    let across = widest(feet.iter().map(|f| f.n))?;
+    (feet.iter().all(fits) && feet.iter().any(|f| f.n.dot(across).abs() > FLAT)).then_some(SimpleForm::Sphere { radius })
 }
 
 /// The unit vector across the two directions that differ most.

@@ -6,7 +6,7 @@
 //!
 //! a and b are the cardinal functions of C2 cubic splines (`cardinal.rs`), the same in all three parts, so the surface
 //! contains every curve to rounding. It is evaluated as this sum: nothing is fitted. Given end slopes would change
-//! nothing but a and b: fields of end slopes that come from the net itself, enclosure by the same splines, cancel between
+//! nothing but a and b: fields of end slopes that come from the net itself, interpolated by the same splines, cancel between
 //! the parts. So the ends are "not a knot", which reproduces cubics, and closed directions are periodic.
 //!
 //! The error for a net of lines of a surface F is (I − P_u)(I − P_v) F: zero where F is a cubic in one direction, and of

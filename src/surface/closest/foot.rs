@@ -22,7 +22,7 @@ pub fn step(du: DVec3, dv: DVec3, d: DVec3) -> Option<DVec2> {
 }
 
 /// Where a foot is looked for: a surface held in a part of its parameters.
-pub(crate) trait Footing {
+pub(crate) trait FootSearch {
     /// Steps before the nearest place found so far is taken.
     const STEPS: usize = 24;
     /// Tries of a step, each half as long as the one before.
@@ -36,11 +36,11 @@ pub(crate) trait Footing {
     fn step(&self, jet: &Jet2, _uv: DVec2, d: DVec3) -> Option<DVec2> {
         step(jet.du, jet.dv, d)
     }
-    /// Whether a step is so short that its end needs no look: the squared distance there is the one here.
+    /// Whether the step is too short to change the distance.
     fn is_last(&self, _jet: &Jet2, _d: DVec3, _step: DVec2) -> bool {
         false
     }
-    /// Whether a step, from a place with a squared distance to another one, was the last that matters.
+    /// Whether the last step, between two places with their squared distances, changed nothing.
     fn settled(&self, (from, _): (DVec2, f64), (to, _): (DVec2, f64)) -> bool {
         (to - from).length() <= EPSILON
     }
@@ -86,7 +86,7 @@ struct Within<'a> {
     v: (f64, f64),
 }
 
-impl Footing for Within<'_> {
+impl FootSearch for Within<'_> {
     const STEPS: usize = 12;
     const TRIES: usize = 12;
 
@@ -101,7 +101,7 @@ impl Footing for Within<'_> {
         if slant { (held - 0.5 * over).clamp(DVec2::ZERO, DVec2::ONE) } else { held }
     }
 
-    /// The full second derivative where it is positive, else the part that always is.
+    /// The full Hessian where positive definite, else the Gauss-Newton part.
     fn step(&self, jet: &Jet2, _uv: DVec2, d: DVec3) -> Option<DVec2> {
         let r = -d;
         let (gu, gv) = (r.dot(jet.du), r.dot(jet.dv));
@@ -116,7 +116,7 @@ impl Footing for Within<'_> {
         })
     }
 
-    /// By what Newton's step takes from the squared distance.
+    /// Compares what the step takes off the squared distance with rounding.
     fn is_last(&self, jet: &Jet2, d: DVec3, step: DVec2) -> bool {
         (d.dot(jet.du) * step.x + d.dot(jet.dv) * step.y).abs() <= EPSILON * d.length_squared()
     }
@@ -136,7 +136,7 @@ pub fn foot_within(evaluator: Evaluator, p: DVec3, guess: (f64, f64), u: (f64, f
 /// Feet on a surface, held in the parts of (u, v) where it is.
 struct WholeSurface<'a>(Evaluator<'a>);
 
-impl Footing for WholeSurface<'_> {
+impl FootSearch for WholeSurface<'_> {
     fn jet(&self, uv: DVec2) -> Jet2 {
         self.0.jet(uv.x, uv.y)
     }

@@ -84,7 +84,7 @@ impl PowerForm {
         };
         // Made once for everyone, whoever comes first.
         let thirds = self.net.thirds.get_or_init(|| work::uncharged(made));
-        thirds.as_ref().map_or([f64::INFINITY; 4], |thirds| thirds.most(area, along))
+        thirds.as_ref().map_or([f64::INFINITY; 4], |thirds| thirds.bounds_along(area, along))
     }
 
     /// The point alone.

@@ -8,7 +8,7 @@ use crate::base::origin::Origin;
 /// What can go wrong with scattered points, or deserves a word. Lengths and points are in model units.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ScatterFault {
-    /// W225: points that are other ones.
+    /// W225: points given twice.
     Merged {
         /// The surface.
         surface: Origin,
@@ -16,7 +16,7 @@ pub enum ScatterFault {
         count: usize,
         /// The first of them.
         at: DVec3,
-        /// How near two points are one.
+        /// Largest distance of two points that count as one.
         tolerance: f64,
     },
     /// E665: points that span no surface.
@@ -31,14 +31,14 @@ pub enum ScatterFault {
         to: DVec3,
     },
     /// E675: two points at one place of the plane.
-    Over {
+    SamePlace {
         /// The surface.
         surface: Origin,
         /// One.
         a: DVec3,
         /// The other one.
         b: DVec3,
-        /// How near places are one.
+        /// Largest distance of two places that count as one.
         tolerance: f64,
     },
     /// W668: a side of a triangle that is very steep.
@@ -60,13 +60,13 @@ pub enum ScatterFault {
         at: DVec3,
         /// How far beyond.
         off: f64,
-        /// How far the points' heights are apart at the most.
+        /// Largest difference of the points' heights.
         range: f64,
     },
 }
 
 impl Describe for ScatterFault {
-    codes! { Merged "W225", OneLine "E665", Over "E675", Steep "W668", StandsOut "W226" }
+    codes! { Merged "W225", OneLine "E665", SamePlace "E675", Steep "W668", StandsOut "W226" }
 
     fn describe(&self, say: &dyn Say) -> Report {
         let label = |report: Report, text: &str| report.label(Subject::Argument("points"), text);
@@ -88,14 +88,14 @@ impl Describe for ScatterFault {
                 );
                 label(Report::new(message), "all on one line").help("add points beside that line, or choose another `along:`")
             }
-            Self::Over { surface, a, b, tolerance } => {
+            Self::SamePlace { surface, a, b, tolerance } => {
                 let ((a, b), which) = (say.pair(*a, *b), say.quoted(*surface, "this surface"));
                 let message = format!(
                     "two points of {which} lie above one another: {a} and {b} have the same place in its plane, within {}",
                     say.length(*tolerance)
                 );
                 label(Report::new(message), "a place has one height")
-                    .help("choose `along:` so that no place has two points, or divide a closed cloud into parts for which that is possible")
+                    .help("choose `along:` so that no place has two points, or divide points of a closed surface into parts for which that is possible")
             }
             Self::Steep { surface, a, b, steep } => {
                 let ((a, b), which) = (say.pair(*a, *b), say.quoted(*surface, "this surface"));

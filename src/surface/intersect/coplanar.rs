@@ -40,7 +40,7 @@ pub(crate) fn overlap(a: &Surface, b: &Surface, tolerance: &Tolerance) -> Result
             for border in others {
                 for met in meet_chains(chain, border, tolerance)? {
                     stops.push(met.fa);
-                    stops.extend(met.shared_to.map(|(fa, _)| fa));
+                    stops.extend(met.overlap_end.map(|(fa, _)| fa));
                 }
             }
             stops.sort_by(f64::total_cmp);

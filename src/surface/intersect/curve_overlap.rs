@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3};
 use crate::base::solve;
 use crate::base::tolerance::{EPSILON, NEWTON_STEP};
 use crate::geometry::curves::pieces::View;
-use crate::surface::closest::foot::Footing;
+use crate::surface::closest::foot::FootSearch;
 use crate::surface::intersect::curve_patch::{Contact, CurveSearch, CurveTouch};
 
 /// The parts of a section that run along a cell.

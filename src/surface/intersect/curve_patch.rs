@@ -10,7 +10,7 @@ use crate::base::tolerance::{EPSILON, NEWTON_STEP};
 use crate::geometry::Curve;
 use crate::geometry::curves::pieces::{Node, View, children};
 use crate::geometry::shapes::bounds::Rates;
-use crate::surface::closest::foot::Footing;
+use crate::surface::closest::foot::FootSearch;
 use crate::surface::intersect::curve_overlap::{Near, runs};
 use crate::surface::intersect::sheet::{Cell, Sheet, solved};
 

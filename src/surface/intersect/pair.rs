@@ -3,7 +3,7 @@
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
 use crate::base::tolerance::{EPSILON, NUDGE, SINGULAR};
-use crate::surface::closest::foot::{self, Footing};
+use crate::surface::closest::foot::{self, FootSearch};
 use crate::surface::data::jet::Jet2;
 use crate::surface::intersect::sheet::{BorderLine, Patch, solved};
 

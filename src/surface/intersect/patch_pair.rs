@@ -9,7 +9,7 @@ use glam::DVec3;
 
 use crate::base::bbox::Box3;
 use crate::base::job;
-use crate::surface::closest::foot::Footing;
+use crate::surface::closest::foot::FootSearch;
 use crate::surface::intersect::march::Branch;
 use crate::surface::intersect::pair::{Pair, Spot};
 use crate::surface::intersect::sheet::{Cell, Sheet};

@@ -5,7 +5,7 @@ use glam::{DMat3, DVec2, DVec3};
 use crate::base::bbox::Box3;
 use crate::base::range::{Interval, Interval3};
 use crate::base::tolerance::{EPSILON, SINGULAR};
-use crate::surface::closest::foot::{self, Footing};
+use crate::surface::closest::foot::{self, FootSearch};
 use crate::surface::core::plane;
 use crate::surface::core::surface::Surface;
 use crate::surface::data::enclosure::Enclosure;
@@ -36,7 +36,7 @@ impl Patch {
     }
 }
 
-impl Footing for Patch {
+impl FootSearch for Patch {
     /// Point and derivatives from inside the patch.
     fn jet(&self, uv: DVec2) -> Jet2 {
         let side = |x: f64, high: f64| if x >= high { OneSided::Before } else { OneSided::After };

@@ -29,7 +29,7 @@ pub struct SurfaceMeeting {
     /// Place on the surface.
     pub uv: (f64, f64),
     /// Where an overlap that lies on the surface ends.
-    pub shared_to: Option<f64>,
+    pub overlap_end: Option<f64>,
 }
 
 /// What stays within the tolerance of a surface for longer lies on it: eight times what a curve as bent as the model is large
@@ -54,9 +54,9 @@ pub fn with_curve(chain: &Chain, surfaces: &[Surface], tolerance: &Tolerance) ->
     for m in all {
         match out.last_mut() {
             // Faces side by side share the place on their edge, and overlaps go on.
-            Some(last) if m.f <= last.shared_to.unwrap_or(last.f) + 2.0 * near => {
-                if let Some(to) = m.shared_to {
-                    last.shared_to = Some(last.shared_to.map_or(to, |f| f.max(to)));
+            Some(last) if m.f <= last.overlap_end.unwrap_or(last.f) + 2.0 * near => {
+                if let Some(to) = m.overlap_end {
+                    last.overlap_end = Some(last.overlap_end.map_or(to, |f| f.max(to)));
                 }
             }
             _ => out.push(m),
@@ -86,18 +86,18 @@ fn with_one(chain: &Chain, surface: &Surface, tolerance: &Tolerance) -> Result<V
     let mut out = Vec::new();
     for (from, to) in kept_intervals(chain, surface, united(overlaps, near), tolerance)? {
         let uv = closest(surface, chain.point(from)).uv;
-        out.push(SurfaceMeeting { point: chain.point(from), f: from, uv, shared_to: Some(to) });
+        out.push(SurfaceMeeting { point: chain.point(from), f: from, uv, overlap_end: Some(to) });
     }
     // The start of a closed curve stands for its end.
     if chain.is_closed(tolerance) {
         points.iter_mut().filter(|t| t.t >= 1.0 - near).for_each(|t| t.t = 0.0);
     }
     for touch in distinct(points, length, tolerance) {
-        let on_stretch = out.iter().any(|m| m.shared_to.is_some_and(|to| m.f - near <= touch.t && touch.t <= to + near));
+        let on_stretch = out.iter().any(|m| m.overlap_end.is_some_and(|to| m.f - near <= touch.t && touch.t <= to + near));
         if !on_stretch && surface.keeps_point(touch.p, touch.uv, tolerance.point) {
             let at_end = [(0.0, chain.start()), (1.0, chain.end())].into_iter().find(|(f, _)| (f - touch.t).abs() <= near);
             let (f, point) = at_end.filter(|_| !chain.is_closed(tolerance)).unwrap_or((touch.t, chain.point(touch.t)));
-            out.push(SurfaceMeeting { point, f, uv: touch.uv.into(), shared_to: None });
+            out.push(SurfaceMeeting { point, f, uv: touch.uv.into(), overlap_end: None });
         }
     }
     out.sort_by(|a, b| a.f.total_cmp(&b.f));
@@ -159,7 +159,7 @@ pub(crate) fn kept_intervals(
         if let Side::Chain { chain: border, .. } = surface.side(k) {
             for m in meet_chains(chain, &border, tolerance)? {
                 cuts.push(m.fa);
-                cuts.extend(m.shared_to.map(|(fa, _)| fa));
+                cuts.extend(m.overlap_end.map(|(fa, _)| fa));
             }
         }
     }
@@ -184,14 +184,14 @@ pub(crate) fn kept_intervals(
     Ok(out)
 }
 
-/// The one place where a curve and a surface meet; none, several or a shared run are E507, E508, E509 with candidates and
+/// The one place where a curve and a surface meet; none, several or an overlap are E507, E508, E509 with candidates and
 /// the closest miss.
 pub fn with_curve_once(chain: &Chain, surfaces: &[Surface], tolerance: &Tolerance) -> Result<SurfaceMeeting> {
     let meetings = with_curve(chain, surfaces, tolerance)?;
-    let runs: Vec<(DVec3, DVec3)> = meetings.iter().filter_map(|m| m.shared_to.map(|to| (m.point, chain.point(to)))).collect();
+    let overlaps: Vec<(DVec3, DVec3)> = meetings.iter().filter_map(|m| m.overlap_end.map(|to| (m.point, chain.point(to)))).collect();
     let (a, b) = (chain.origin(), surfaces.first().map_or(Origin::NONE, Surface::origin));
-    if !runs.is_empty() {
-        return Err(MeetingFault::SharesRun { a, b, runs }.into());
+    if !overlaps.is_empty() {
+        return Err(MeetingFault::Overlap { a, b, overlaps }.into());
     }
     match meetings.as_slice() {
         [one] => Ok(*one),

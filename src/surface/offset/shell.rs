@@ -267,7 +267,7 @@ impl Making<'_> {
         let met = meet(&whole[a], &whole[b], self.tolerance)?;
         let hits = met.iter().map(|m| m.point).min_by(|x, y| x.distance(expected).total_cmp(&y.distance(expected)));
         // One edge that goes on past the corner, as across the seam of a face: all of it is common.
-        let goes_on = met.iter().any(|m| m.shared_to.is_some());
+        let goes_on = met.iter().any(|m| m.overlap_end.is_some());
         let found = if goes_on { Some(whole[a].closest(expected).1) } else { hits };
         let mut at = found.filter(|x| x.distance(expected) <= self.reach);
         if at.is_none() && !(held(a) && held(b)) {

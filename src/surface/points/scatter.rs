@@ -13,13 +13,13 @@ use crate::base::triangulate::delaunay;
 use crate::geometry::data::fault::CurveFault;
 use crate::surface::core::surface::Surface;
 use crate::surface::faults::ScatterFault;
-use crate::surface::points::scatter::ground::{Cloud, cloud};
+use crate::surface::points::scatter::plane::{Cloud, cloud, on_one_line};
 use crate::surface::shapes::cubic_triangle::{Corner, pieces};
 use crate::surface::shapes::frame::Frame;
 use crate::surface::shapes::height_field::Field;
 
 pub mod border;
-pub mod ground;
+pub mod plane;
 pub mod slopes;
 
 /// Steeper than this, rise over run, a side of a triangle deserves a word: the points may be of two sheets.
@@ -37,7 +37,7 @@ pub fn scatter(points: &[DVec3], along: Option<DVec3>, origin: Origin, tolerance
     if points.len() < 3 {
         return Err(few(points.len()));
     }
-    let Cloud { base, normal, places, merged } = cloud(points, along, origin, tolerance)?;
+    let Cloud { plane, places, merged } = cloud(points, along, origin, tolerance)?;
     if let Some((count, at)) = merged {
         notes.push(ScatterFault::Merged { surface: origin, count, at, tolerance: tolerance.point }.into());
     }
@@ -51,9 +51,9 @@ pub fn scatter(points: &[DVec3], along: Option<DVec3>, origin: Origin, tolerance
     let scaled: Vec<DVec2> = flat.iter().map(|p| (*p - low) / unit).collect();
     let (triangles, sides) = border::peeled(delaunay(&scaled), &flat, tolerance.point);
     if triangles.is_empty() {
-        return Err(ground::on_one_line(points, &flat, origin));
+        return Err(on_one_line(points, &flat, origin));
     }
-    notes.extend(steepest(&places, &triangles, origin, |p| base.place(p)));
+    notes.extend(steepest(&places, &triangles, origin, |p| plane.place(p)));
     let gradients = slopes::slopes(&places, &triangles);
     let corner = |k: usize| Corner { at: flat[k] - low, h: places[k].z, slope: gradients[k] };
     let beside = border::opposite(&triangles);
@@ -62,10 +62,10 @@ pub fn scatter(points: &[DVec3], along: Option<DVec3>, origin: Origin, tolerance
         pieces(&t.map(corner), others.map(|other| other.map(|k| flat[k] - low)), size)
     });
     let made = made.collect();
-    let [ex, ey] = base.axes;
-    let frame = Frame { origin: base.place(low.extend(0.0)), eu: ex * size.x, ev: ey * size.y };
+    let [ex, ey] = plane.axes;
+    let frame = Frame { origin: plane.place(low.extend(0.0)), eu: ex * size.x, ev: ey * size.y };
     let rim: Vec<usize> = sides.iter().map(|side| side.piece).collect();
-    let field = Field::new(frame, normal, made, &rim);
+    let field = Field::new(frame, plane.normal, made, &rim);
     notes.extend(standing_out(&places, &field, origin));
     let count = places.len();
     let surface = border::surface(field, &border::runs(&sides, &flat, tolerance), count, origin, tolerance)?;

@@ -121,9 +121,9 @@ pub(crate) fn simple(walk: &[Step], tolerance: &Tolerance) -> Result<()> {
             }
             for hit in meet(&walk[a].0, &walk[b].0, tolerance)? {
                 let joined = joints.iter().any(|p| p.distance(hit.point) <= 2.0 * tolerance.point);
-                if !joined || hit.shared_to.is_some() {
+                if !joined || hit.overlap_end.is_some() {
                     let gap = |fa: f64, fb: f64| walk[a].0.point(fa).distance(walk[b].0.point(fb));
-                    let apart = hit.shared_to.map_or(f64::INFINITY, |(fa, fb)| gap(fa, fb)).min(gap(hit.fa, hit.fb));
+                    let apart = hit.overlap_end.map_or(f64::INFINITY, |(fa, fb)| gap(fa, fb)).min(gap(hit.fa, hit.fb));
                     return Err(crossing((a, b), hit.point, (hit.fa, hit.fb), apart));
                 }
             }

@@ -1,7 +1,7 @@
 //! Bounds of the third derivatives of a net over boxes that get smaller where that makes the bounds much better.
 //!
-//! Hulls of differences, and the quotient rule where weights differ, say many times what there is over a span in which a net runs at
-//! uneven speed or goes a good part of a turn round. Halves of a box decide: where they are hardly better, the box is small enough.
+//! Hulls of differences, and the quotient rule where weights differ, overestimate many times over a span in which a net runs at
+//! uneven speed or turns through a good part of a circle. Halves of a box decide: where they are hardly better, the box is small enough.
 
 use std::collections::VecDeque;
 
@@ -14,30 +14,30 @@ use crate::surface::shapes::nurbs::NurbsSurface;
 
 /// Boxes along each side of a span at the least.
 const BOXES: usize = 3;
-/// Degree up to which bounds over those of a net of one weight are near enough.
-const PLAIN: usize = 3;
+/// Nets of one weight up to this degree need no halving.
+const MAX_UNHALVED_DEGREE: usize = 3;
 /// Bounds over smaller boxes as a share of those over larger ones, from which on boxes are small enough.
 const MAX_BOUND_RATIO: f64 = 0.75;
-/// What bounds in any direction weigh beside those along the normal: triangles hardly side.
+/// What bounds in any direction weigh beside those along the normal: triangles are hardly tilted against the surface.
 const LEANING: f64 = 0.1;
 /// Halvings of a box along each direction.
 const MAX_DEPTH: u8 = 6;
 /// Boxes of a net that are halved at most.
-const MOST: usize = 2048;
+const MAX_HALVED: usize = 2048;
 
-/// Bounds of |∂uuu|, |∂uuv|, |∂uvv|, |∂vvv| over a box: along a unit vector, and as a whole.
+/// Bounds of |∂uuu|, |∂uuv|, |∂uvv|, |∂vvv| over a box: along a unit normal, and in any direction.
 #[derive(Clone, Copy, Debug)]
 struct ThirdDerivatives {
     normal: DVec3,
-    upright: [f64; 4],
-    whole: [f64; 4],
+    along_normal: [f64; 4],
+    any_direction: [f64; 4],
 }
 
 impl ThirdDerivatives {
     /// How far they let the surface be off over a box of these widths.
     fn weight(&self, wide: DVec2) -> f64 {
         let powers = [wide.x * wide.x * wide.x, wide.x * wide.x * wide.y, wide.x * wide.y * wide.y, wide.y * wide.y * wide.y];
-        (0..4).map(|k| (self.upright[k] + LEANING * self.whole[k]) * powers[k]).sum()
+        (0..4).map(|k| (self.along_normal[k] + LEANING * self.any_direction[k]) * powers[k]).sum()
     }
 }
 
@@ -80,8 +80,8 @@ impl ThirdDerivativeBounds {
         let third = |(i, j): (usize, usize)| net.third(&us[i], &vs[j], normal(middle(&lines.0, i), middle(&lines.1, j)));
         let nodes = (0..vs.len()).flat_map(row).map(|at| Node { third: third(at), halves: None }).collect();
         let mut thirds = Self { lines, nodes };
-        let plain = net.degree.0.max(net.degree.1) <= PLAIN && net.poles.iter().all(|q| q.w == net.poles[0].w);
-        if !plain {
+        let needs_no_halving = net.degree.0.max(net.degree.1) <= MAX_UNHALVED_DEGREE && net.poles.iter().all(|q| q.w == net.poles[0].w);
+        if !needs_no_halving {
             thirds.halve(net, knots, normal);
         }
         thirds
@@ -105,14 +105,14 @@ impl ThirdDerivativeBounds {
                 let (low, high) = (DVec2::new(knots.0[i], knots.1[j]), DVec2::new(knots.0[i + 1], knots.1[j + 1]));
                 let inner: Vec<(usize, usize)> = (0..BOXES * BOXES).map(|k| (i * BOXES + k % BOXES, j * BOXES + k / BOXES)).collect();
                 let of_parts: f64 = inner.iter().map(|(i, j)| self.nodes[j * n + i].third.weight(high - low)).sum();
-                // What is one over the whole span and over its boxes will be over smaller ones.
+                // Where boxes give the bound of the whole span, smaller ones would too.
                 if of_parts < MAX_BOUND_RATIO * (BOXES * BOXES) as f64 * over((low, high)).weight(high - low) {
                     open.extend(inner.into_iter().map(|(i, j)| (j * n + i, self.area((i, j)), [0; 2])));
                 }
             }
         }
         let mut halved = 0;
-        while let Some((node, area, deep)) = open.pop_front().filter(|_| halved < MOST) {
+        while let Some((node, area, deep)) = open.pop_front().filter(|_| halved < MAX_HALVED) {
             let wide = area.1 - area.0;
             let whole = self.nodes[node].third.weight(wide);
             let tries = (0..2).filter(|axis| deep[*axis] < MAX_DEPTH).map(|axis| {
@@ -135,39 +135,39 @@ impl ThirdDerivativeBounds {
     }
 
     /// Bounds along a unit vector over a box: ∂uuu, ∂uuv, ∂uvv, ∂vvv.
-    pub fn most(&self, (low, high): Area, along: DVec3) -> [f64; 4] {
+    pub fn bounds_along(&self, (low, high): Area, along: DVec3) -> [f64; 4] {
         let range = |lines: &[f64], a: f64, b: f64| {
             let at = |x: f64| lines.partition_point(|l| *l <= x).clamp(1, lines.len() - 1) - 1;
             (at(a), at(b))
         };
         let ((i0, i1), (j0, j1)) = (range(&self.lines.0, low.x, high.x), range(&self.lines.1, low.y, high.y));
         let n = self.lines.0.len() - 1;
-        let mut most = [0.0_f64; 4];
+        let mut bounds = [0.0_f64; 4];
         for j in j0..=j1 {
             for i in i0..=i1 {
-                self.add(j * n + i, self.area((i, j)), (low, high), along, &mut most);
+                self.add(j * n + i, self.area((i, j)), (low, high), along, &mut bounds);
             }
         }
-        most
+        bounds
     }
 
-    /// Adds what a box and its halves say over another one.
-    fn add(&self, node: usize, own: Area, area: Area, along: DVec3, most: &mut [f64; 4]) {
+    /// Raises bounds over another box by those of a box and its halves.
+    fn add(&self, node: usize, own: Area, area: Area, along: DVec3, bounds: &mut [f64; 4]) {
         let Node { third, halves: parts } = &self.nodes[node];
         let Some((axis, first)) = parts else {
             let (up, aside) = (along.dot(third.normal).abs(), along.cross(third.normal).length());
-            for (k, m) in most.iter_mut().enumerate() {
-                *m = m.max((up * third.upright[k] + aside * third.whole[k]).min(third.whole[k]));
+            for (k, bound) in bounds.iter_mut().enumerate() {
+                *bound = bound.max((up * third.along_normal[k] + aside * third.any_direction[k]).min(third.any_direction[k]));
             }
             return;
         };
         let [before, after] = halves(own, *axis);
         let middle = before.1[*axis];
         if area.0[*axis] < middle {
-            self.add(*first as usize, before, area, along, most);
+            self.add(*first as usize, before, area, along, bounds);
         }
         if area.1[*axis] >= middle {
-            self.add(*first as usize + 1, after, area, along, most);
+            self.add(*first as usize + 1, after, area, along, bounds);
         }
     }
 }
@@ -211,8 +211,8 @@ impl NurbsSurface {
                 (r * n..r * n + n - i - 1).for_each(|k| net[k] = (net[k + 1] - net[k]) * f);
             }
         }
-        let upright = highest(&a, &w, points.0, light);
-        ThirdDerivatives { normal, upright, whole: highest(&b, &w, points.1, light) }
+        let along_normal = highest(&a, &w, points.0, light);
+        ThirdDerivatives { normal, along_normal, any_direction: highest(&b, &w, points.1, light) }
     }
 }
 
@@ -279,12 +279,12 @@ mod tests {
                     [slope(left.duu, right.duu), slope(below.duu, above.duu), slope(left.dvv, right.dvv), slope(below.dvv, above.dvv)];
                 let along = DVec3::new(at(3) - 0.5, at(4) - 0.5, at(5) - 0.5).normalize();
                 let half = DVec2::new(0.02 * at(6), 0.02 * at(7));
-                let most = thirds.most((DVec2::new(u, v) - half, DVec2::new(u, v) + half), along);
-                for (third, most) in found.iter().zip(most) {
+                let bounds = thirds.bounds_along((DVec2::new(u, v) - half, DVec2::new(u, v) + half), along);
+                for (third, bound) in found.iter().zip(bounds) {
                     let own = third.dot(along).abs();
-                    assert!(own <= most * (1.0 + 1e-4) + 1e-3, "case {case}, at {u} {v}: {own} is above {most}");
+                    assert!(own <= bound * (1.0 + 1e-4) + 1e-3, "case {case}, at {u} {v}: {own} is above {bound}");
                     if own > 1.0 {
-                        (tightest, looked) = (tightest.min(most / own), looked + 1);
+                        (tightest, looked) = (tightest.min(bound / own), looked + 1);
                     }
                 }
             }

@@ -132,7 +132,7 @@ fn clear_of_axis(profile: &Chain, axis: &Axis, tolerance: &Tolerance) -> Result<
     let straight = Chain::of_curve(&line(at(middle - reach), at(middle + reach), Origin::NONE)?);
     let closed = profile.is_closed(tolerance);
     for hit in meet(profile, &straight, tolerance)? {
-        if let Some((end, _)) = hit.shared_to {
+        if let Some((end, _)) = hit.overlap_end {
             let to = profile.point(end);
             if hit.point.distance(to) > tolerance.point {
                 return Err(ProfileFault::GeneratrixOnAxis { profile: profile.origin(), from: hit.point, to }.into());

@@ -162,7 +162,7 @@ fn part(all: &mut [DividingCurve], meets: Meets, tolerance: &Tolerance) -> Resul
             for m in shared_runs::meetings(&a, &b, tolerance)? {
                 all[i].cuts.push(m.fa);
                 all[j].cuts.push(m.fb);
-                if let Some((fa, fb)) = m.shared_to {
+                if let Some((fa, fb)) = m.overlap_end {
                     all[i].cuts.push(fa);
                     all[j].cuts.push(fb);
                 }

@@ -137,7 +137,7 @@ pub(crate) fn touches(rings: &[LoopRing], new: usize, tolerance: &Tolerance) -> 
                 touch.add(m.point, a.chain.point(m.fa).distance(b.chain.point(m.fb)), tolerance);
                 touch.cuts.0.push((a.number, m.fa));
                 touch.cuts.1.push((b.number, m.fb));
-                if let Some((fa, fb)) = m.shared_to {
+                if let Some((fa, fb)) = m.overlap_end {
                     let end = a.chain.point(fa);
                     touch.add(end, end.distance(b.chain.point(fb)), tolerance);
                     touch.cuts.0.push((a.number, fa));
@@ -238,7 +238,7 @@ impl LoopRing {
             for chain in &self.chains {
                 for m in meet(seam, chain, tolerance)? {
                     touch.add(m.point, 0.0, tolerance);
-                    touch.run = touch.run.or(m.shared_to.map(|_| (m.point, m.point)));
+                    touch.run = touch.run.or(m.overlap_end.map(|_| (m.point, m.point)));
                 }
             }
         }

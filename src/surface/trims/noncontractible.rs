@@ -55,9 +55,9 @@ impl TrimLoop {
 
     /// Whether every place of it is inside another one, each moved by turns of its own; a place on a seam is.
     pub fn lies_within(&self, base: &Surface, bounds: &TrimLoop) -> bool {
-        let hairs = [DVec2::ZERO, DVec2::splat(NUDGE), DVec2::splat(-NUDGE), DVec2::new(NUDGE, -NUDGE), DVec2::new(-NUDGE, NUDGE)];
+        let offsets = [DVec2::ZERO, DVec2::splat(NUDGE), DVec2::splat(-NUDGE), DVec2::new(NUDGE, -NUDGE), DVec2::new(-NUDGE, NUDGE)];
         let outline = bounds.polygon();
-        let place = |p: DVec2| bounds.copies(base, p).into_iter().any(|at| hairs.iter().any(|hair| inside(&outline, at + *hair)));
+        let place = |p: DVec2| bounds.copies(base, p).into_iter().any(|at| offsets.iter().any(|off| inside(&outline, at + *off)));
         self.trim_curves.iter().flat_map(TrimCurve::places).all(place)
     }
 }

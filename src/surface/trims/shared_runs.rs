@@ -32,8 +32,8 @@ pub(crate) fn meetings(a: &Chain, b: &Chain, tolerance: &Tolerance) -> Result<Ve
         }
     }
     for m in &mut out {
-        if let Some((fa, fb)) = m.shared_to.and_then(|to| crossing(a, b, ((m.fa, m.fb), to), tolerance)) {
-            *m = Meeting { point: a.point(fa), fa, fb, tangent: m.tangent, shared_to: None };
+        if let Some((fa, fb)) = m.overlap_end.and_then(|to| crossing(a, b, ((m.fa, m.fb), to), tolerance)) {
+            *m = Meeting { point: a.point(fa), fa, fb, tangent: m.tangent, overlap_end: None };
         }
     }
     Ok(out)
@@ -47,14 +47,14 @@ fn alongside(a: &Chain, b: &Chain, (fa, fb): (f64, f64)) -> bool {
 
 /// The run from one meeting to the end of another, where it is within the tolerance, but not one curve, between them.
 fn together(a: &Chain, b: &Chain, (first, next): (&Meeting, &Meeting), tolerance: &Tolerance) -> Option<Meeting> {
-    let (from, to) = (first.shared_to.unwrap_or((first.fa, first.fb)), (next.fa, next.fb));
+    let (from, to) = (first.overlap_end.unwrap_or((first.fa, first.fb)), (next.fa, next.fb));
     let (own, other) = ((to.0 - from.0).abs() * a.length(), (to.1 - from.1).abs() * b.length());
     let alike = own.min(other) * UNLIKE + tolerance.point >= own.max(other);
     let gap = |k: usize| b.closest(a.point(from.0 + (to.0 - from.0) * k as f64 / SAMPLES as f64)).2;
     if !alike || !alongside(a, b, from) || !alongside(a, b, to) || (1..SAMPLES).any(|k| gap(k) > tolerance.point) {
         return None;
     }
-    Some(Meeting { shared_to: Some(next.shared_to.unwrap_or(to)), ..*first })
+    Some(Meeting { overlap_end: Some(next.overlap_end.unwrap_or(to)), ..*first })
 }
 
 /// The one place, by its fractions on both curves, that a run within the tolerance stands for: where they are nearest.

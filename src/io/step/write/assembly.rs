@@ -176,8 +176,8 @@ fn repainted<'t>(pairs: impl Iterator<Item = (&'t Thing, &'t Thing)>) -> Option<
     }
     let Some(first) = colors.iter().find(|(a, b)| a != b).copied() else { return Some(None) };
     let (Some(from), Some(to)) = first else { return None };
-    let as_told = |(a, b): &Pair| *b == if *a == Some(from) { Some(to) } else { *a };
-    colors.iter().all(as_told).then_some(Some((from, to)))
+    let as_repainted = |(a, b): &Pair| *b == if *a == Some(from) { Some(to) } else { *a };
+    colors.iter().all(as_repainted).then_some(Some((from, to)))
 }
 
 /// Whether faces are others moved, face by face, with the same names and layers.

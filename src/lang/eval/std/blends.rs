@@ -2,7 +2,7 @@
 
 use crate::base::fault::{Say, ValueFault};
 use crate::builtins;
-use crate::lang::eval::std::surfaces::finished;
+use crate::lang::eval::std::surfaces::reported;
 use crate::lang::values::conversions::{Length, Point};
 use crate::surface::{Surface, rolling};
 
@@ -37,6 +37,6 @@ builtins! {
         }
         let (origin, tolerance) = (cx.origin(), cx.tolerance()?);
         let parts = rolling([&a, &b], radius.0, keep.map(|p| p.0), origin, &tolerance)?;
-        parts.into_iter().map(|part| finished(cx, part, &[])).collect()
+        parts.into_iter().map(|part| reported(cx, part, &[])).collect()
     };
 }

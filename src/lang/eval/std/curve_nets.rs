@@ -5,7 +5,7 @@ use crate::base::tolerance::Tolerance;
 use crate::builtins;
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
-use crate::lang::eval::std::surfaces::finished;
+use crate::lang::eval::std::surfaces::reported;
 use crate::lang::values::conversions::{Point, Rest};
 use crate::network::{self, Chain, ChainFlow, FlowKind};
 use crate::surface::blended::coons::{self, Grid, Method, Settings};
@@ -106,7 +106,7 @@ fn over_grid(cx: &mut Cx, curves: Curves, said: &Said) -> Result<Surface, Halt> 
     };
     let settings = Settings { method: said.method, reparam, origin: cx.origin() };
     let (surface, notes) = coons::build(&Grid { chains: &chains, flow: &flow, poles }, &settings, &tolerance)?;
-    finished(cx, surface, &notes)
+    reported(cx, surface, &notes)
 }
 
 builtins! {

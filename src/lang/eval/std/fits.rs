@@ -6,7 +6,7 @@ use crate::geometry::construct::fit_curve::{Fit, fit};
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
 use crate::lang::eval::std::curves::{places, unit, whole};
-use crate::lang::eval::std::surfaces::{finished, rows};
+use crate::lang::eval::std::surfaces::{reported, rows};
 use crate::lang::values::conversions::{Angle, Direction, FromValue, Length, Point};
 use crate::lang::values::types::Ty;
 use crate::lang::values::value::Value;
@@ -91,7 +91,7 @@ fn fitted(cx: &mut Cx, data: Data, said: Said) -> Result<Value, Halt> {
             cx.seen(net.iter().flatten().copied());
             let tolerance = cx.tolerance()?;
             let (surface, notes) = surface::points::fit_net::fit(&net, within, cx.origin(), &tolerance)?;
-            Ok(Value::Surface(finished(cx, surface, &notes)?))
+            Ok(Value::Surface(reported(cx, surface, &notes)?))
         }
     }
 }

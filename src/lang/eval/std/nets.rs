@@ -6,7 +6,7 @@ use crate::builtins;
 use crate::lang::eval::halt::Halt;
 use crate::lang::eval::std::curves::unit;
 use crate::lang::eval::std::kinds::{EndKind, SectionKind};
-use crate::lang::eval::std::surfaces::finished;
+use crate::lang::eval::std::surfaces::reported;
 use crate::lang::values::conversions::Length;
 use crate::network::Chain;
 use crate::network::net;
@@ -67,7 +67,7 @@ builtins! {
         let settings = Settings { method: Method::Gordon, reparam: Reparam::Smooth, origin: cx.origin() };
         let (surface, mut notes) = coons::build(&Grid { chains: &chains, flow: &flow, poles }, &settings, &tolerance)?;
         notes.extend(surface.gap_note(&tolerance));
-        finished(cx, surface, &notes)
+        reported(cx, surface, &notes)
     };
 
     /// Smooth surface through sections, one after the other.
@@ -124,7 +124,7 @@ builtins! {
         let ends = (leaving(start, "start")?, leaving(end, "end")?);
         let settings = skin::Settings { across, closed, ends, smooth, origin: cx.origin() };
         let (surface, notes) = skin::skin(&sections, &settings, &tolerance)?;
-        finished(cx, surface, &notes)
+        reported(cx, surface, &notes)
     };
 }
 

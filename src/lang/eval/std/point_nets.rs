@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::base::fault::ValueFault;
 use crate::builtins;
-use crate::lang::eval::std::surfaces::{finished, rows};
+use crate::lang::eval::std::surfaces::{reported, rows};
 use crate::lang::values::conversions::{Length, Point};
 use crate::surface::Surface;
 use crate::surface::points::control_net::{self, Net};
@@ -26,7 +26,7 @@ builtins! {
         cx.seen(net.iter().flatten().copied());
         let tolerance = cx.tolerance()?;
         let surface = control_net::bezier(&Net { rows: &net, weights: weights.as_deref() }, cx.origin(), &tolerance)?;
-        finished(cx, surface, &[])
+        reported(cx, surface, &[])
     };
 
     /// Polynomial patch: coordinates are sums of coefficients times powers of u, v.
@@ -62,7 +62,7 @@ builtins! {
         cx.seen(net.iter().flatten().copied());
         let tolerance = cx.tolerance()?;
         let surface = control_net::bezier(&Net { rows: &net, weights: None }, cx.origin(), &tolerance)?;
-        finished(cx, surface, &[])
+        reported(cx, surface, &[])
     };
 
     /// Rational B-spline surface of a net of control points.
@@ -91,7 +91,7 @@ builtins! {
         let knots = (knots_u.as_deref(), knots_v.as_deref());
         let net = Net { rows: &net, weights: weights.as_deref() };
         let surface = control_net::nurbs(&net, (degree_u, degree_v), knots, cx.origin(), &tolerance)?;
-        finished(cx, surface, &[])
+        reported(cx, surface, &[])
     };
 
     /// Smooth surface through a grid of points.
@@ -108,6 +108,6 @@ builtins! {
         cx.seen(points.iter().flatten().copied());
         let tolerance = cx.tolerance()?;
         let (surface, notes) = interpolate::grid(&points, cx.origin(), &tolerance)?;
-        finished(cx, surface, &notes)
+        reported(cx, surface, &notes)
     };
 }

@@ -1,7 +1,7 @@
 //! Surfaces that follow one another, as one.
 
 use crate::builtins;
-use crate::lang::eval::std::surfaces::finished;
+use crate::lang::eval::std::surfaces::reported;
 use crate::lang::values::conversions::Rest;
 use crate::surface::{self, Surface};
 
@@ -24,6 +24,6 @@ builtins! {
     ) -> Surface = |cx, surfaces| {
         let tolerance = cx.tolerance()?;
         let joined = surface::join(&surfaces.0, cx.origin(), &tolerance)?;
-        finished(cx, joined, &[])
+        reported(cx, joined, &[])
     };
 }

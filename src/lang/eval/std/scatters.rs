@@ -2,7 +2,7 @@
 
 use crate::builtins;
 use crate::lang::eval::std::curves::places;
-use crate::lang::eval::std::surfaces::finished;
+use crate::lang::eval::std::surfaces::reported;
 use crate::lang::values::conversions::{Direction, Point};
 use crate::surface::{self, Surface};
 
@@ -14,7 +14,7 @@ builtins! {
     /// nearest to their neighbours. The surface contains every point and is smooth everywhere; planes are met exactly, and quadratics where
     /// a point has neighbours enough. Its border is the convex hull of the points, drawn in to points that are about in a row along it (thin
     /// triangles, below 3°, are left out). u and v run over their box in the plane, u as near to
-    /// the x-axis as can be; the normal points up. A place of the plane has one height: a closed cloud is divided first.
+    /// the x-axis as can be; the normal points up. A place of the plane has one height: points of a closed surface are divided first.
     /// ```loft
     /// let soundings = [for k in 0..40: (sin(k * 137deg) * k * 25m, cos(k * 137deg) * k * 25m, -20m - cos(k * 9deg) * 5m)]
     /// surface bed = scatter(soundings, along: (0, 0, 1))
@@ -30,6 +30,6 @@ builtins! {
         cx.seen(points.iter().copied());
         let tolerance = cx.tolerance()?;
         let (surface, notes) = surface::scatter(&points, along.map(|d| d.0), cx.origin(), &tolerance)?;
-        finished(cx, surface, &notes)
+        reported(cx, surface, &notes)
     };
 }

@@ -10,7 +10,7 @@ use crate::geometry::Spline;
 use crate::geometry::construct::{build, polynomial};
 use crate::lang::eval::std::curves::{CurveOrSurface, ends, places, unit, whole, with_notes};
 use crate::lang::eval::std::kinds::PointsOrSurface;
-use crate::lang::eval::std::surfaces::finished;
+use crate::lang::eval::std::surfaces::reported;
 use crate::lang::values::conversions::{Direction, Length, Point};
 use crate::lang::values::units::number_text;
 use crate::lang::values::value::Value;
@@ -150,7 +150,7 @@ builtins! {
                     return Err(ValueFault::OutsideRange { argument: "tolerance", found, range }.into());
                 }
                 let (made, note) = surface.as_net(origin, &near)?;
-                Ok(Value::Surface(finished(cx, made, note.as_slice())?))
+                Ok(Value::Surface(reported(cx, made, note.as_slice())?))
             }
         }
     };
@@ -224,7 +224,7 @@ builtins! {
                     return Err(ValueFault::OutsideRange { argument: "tolerance", found, range }.into());
                 }
                 let (made, notes) = offset(&surface, distance.0, origin, &near)?;
-                Ok(Value::Surface(if notes.is_empty() { finished(cx, made, &[])? } else { with_notes(cx, made, &notes) }))
+                Ok(Value::Surface(if notes.is_empty() { reported(cx, made, &[])? } else { with_notes(cx, made, &notes) }))
             }
         }
     };

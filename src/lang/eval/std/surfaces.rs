@@ -38,8 +38,8 @@ pub(crate) fn checked_uv(surface: &Surface, u: (f64, &'static str), v: (f64, &'s
     Ok((u.0, v.0))
 }
 
-/// Says the notes of a surface and what a look at it finds.
-pub(crate) fn finished(cx: &mut Cx, surface: Surface, notes: &[Fault]) -> Result<Surface, Halt> {
+/// Reports the notes and what `validate` finds.
+pub(crate) fn reported(cx: &mut Cx, surface: Surface, notes: &[Fault]) -> Result<Surface, Halt> {
     notes.iter().for_each(|note| cx.say(note));
     let tolerance = cx.tolerance()?;
     let found = surface.validate(&tolerance);
@@ -63,7 +63,7 @@ pub(crate) fn note_crossing(cx: &mut Cx, said: &[Fault], faces: &[Surface], tole
 
 /// Where a part of a surface stands among others: its centre in whole tolerances, which rounding does not change, and its area.
 fn by_centre(part: Surface, tolerance: &Tolerance) -> ([i64; 3], f64, Surface) {
-    // Centres often lie on round numbers: the steps between whole tolerances do not.
+    // An offset, so that rounding does not decide for centres at round numbers.
     const OFF: f64 = 0.37;
     let sheet = measure::sheet(std::slice::from_ref(&part));
     let whole = |x: f64| (x / tolerance.point + OFF).floor() as i64;
@@ -94,7 +94,7 @@ builtins! {
     ) -> Surface = |cx, a, b| {
         let tolerance = cx.tolerance()?;
         let (surface, notes) = surface_between(&a, &b, cx.origin(), &tolerance)?;
-        finished(cx, surface, &notes)
+        reported(cx, surface, &notes)
     };
 
     /// Flat face inside curves that close, or the unbounded plane through a point.
@@ -117,7 +117,7 @@ builtins! {
         (false, None, None) => {
             let tolerance = cx.tolerance()?;
             let (surface, notes) = plane_face::bounded(&curves.0, cx.origin(), &tolerance)?;
-            finished(cx, surface, &notes).map(Value::Surface)
+            reported(cx, surface, &notes).map(Value::Surface)
         }
         (false, at, _) => {
             let arguments = vec!["curves", if at.is_some() { "at" } else { "normal" }];
@@ -201,7 +201,7 @@ builtins! {
         let (by, keep) = match (by, keep) {
             (None, None) => {
                 let surface = crate::surface::trim(&s, &outer, &holes, cx.origin(), &tolerance)?;
-                return finished(cx, surface.cut_from(&[s]), &[]);
+                return reported(cx, surface.cut_from(&[s]), &[]);
             }
             (Some(by), Some(keep)) => (by, keep),
             (Some(_), None) => return Err(ValueFault::Missing { function: "trim", what: "a point of the part to keep", example: TRIM_EXAMPLE }.into()),
@@ -213,7 +213,7 @@ builtins! {
         let surface = crate::surface::divide(&whole, &cutters, keep.0, cx.origin(), &tolerance)?;
         let parts = crate::surface::split(&whole, &cutters, cx.origin(), &tolerance)?;
         measure::adds_up(&whole, &cutters, &measure::areas(&parts), &tolerance)?;
-        finished(cx, surface.cut_from(&[s]), &[])
+        reported(cx, surface.cut_from(&[s]), &[])
     };
 
     /// All parts into which curves or surfaces divide a surface.
@@ -241,7 +241,7 @@ builtins! {
         let mut keyed: Vec<([i64; 3], f64, Surface)> = parts.into_iter().map(|part| by_centre(part, &tolerance)).collect();
         measure::adds_up(&s, &cutters, &keyed.iter().map(|part| part.1).collect::<Vec<_>>(), &tolerance)?;
         keyed.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
-        keyed.into_iter().map(|(_, _, part)| finished(cx, part, &[])).collect()
+        keyed.into_iter().map(|(_, _, part)| reported(cx, part, &[])).collect()
     };
 
     /// Surface swept by a curve along a straight line.
@@ -259,7 +259,7 @@ builtins! {
     ) -> Surface = |cx, profile, by| {
         let tolerance = cx.tolerance()?;
         let surface = extrude::extrude(&profile, by.0, cx.origin(), &tolerance)?;
-        finished(cx, surface, &[])
+        reported(cx, surface, &[])
     };
 
     /// Surface swept by a curve about an axis.
@@ -283,6 +283,6 @@ builtins! {
         let (direction, start) = axis_line(cx, &axis)?;
         let about = about.map(|p| p.0).or(start).unwrap_or(DVec3::ZERO);
         let surface = revolve::revolve(&profile, &revolve::Axis { about, direction }, angle.0, cx.origin(), &tolerance)?;
-        finished(cx, surface, &[])
+        reported(cx, surface, &[])
     };
 }

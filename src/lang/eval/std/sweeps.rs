@@ -3,7 +3,7 @@
 use crate::base::fault::Say;
 use crate::base::fault::ValueFault;
 use crate::builtins;
-use crate::lang::eval::std::surfaces::finished;
+use crate::lang::eval::std::surfaces::reported;
 use crate::lang::eval::std::transforms::axis_line;
 use crate::lang::values::conversions::{Angle, Axis, Length, Point};
 use crate::lang::values::value::Value;
@@ -77,7 +77,7 @@ builtins! {
         let tolerance = cx.tolerance()?;
         let settings = AlongSettings { twist: twist.0, round: matches!(corner, CornerWord::Round), origin: cx.origin() };
         let (surface, notes) = carried_along(&profile, &path, &settings, &tolerance)?;
-        finished(cx, surface, &notes)
+        reported(cx, surface, &notes)
     };
 
     /// Surface of sections that travel along guides by a law.
@@ -139,7 +139,7 @@ builtins! {
         };
         let input = Input { sections: &sections, guides: &guides, law, method, origin: cx.origin() };
         let (surface, notes) = swept(&input, &tolerance)?;
-        finished(cx, surface, &notes)
+        reported(cx, surface, &notes)
     };
 }
 

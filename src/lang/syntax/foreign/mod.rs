@@ -124,7 +124,7 @@ impl Refusal<'_> {
     /// The loft form of what stands there.
     pub fn meant(&self) -> Option<Meant> {
         let rules: [fn(&Self) -> Option<Meant>; 26] = [
-            Self::head_sign,
+            Self::needless_sign,
             Self::value_word,
             Self::function_word,
             Self::printed,
@@ -147,8 +147,8 @@ impl Refusal<'_> {
             Self::name_with_brackets,
             Self::bare_point,
             Self::decimal_comma,
-            Self::loop_behind,
-            Self::choice_behind,
+            Self::loop_after_value,
+            Self::condition_after_value,
             Self::colon_for_equals,
         ];
         rules.iter().find_map(|rule| rule(self))

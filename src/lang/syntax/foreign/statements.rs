@@ -42,8 +42,8 @@ pub(crate) fn range(arguments: &[&str]) -> Option<String> {
 }
 
 impl Refusal<'_> {
-    /// `units = mm`, `tolerance: 1mm`.
-    pub(crate) fn head_sign(&self) -> Option<Meant> {
+    /// A sign after `units`, `tolerance` or `snap`: `units = mm`, `tolerance: 1mm`.
+    pub(crate) fn needless_sign(&self) -> Option<Meant> {
         let head = matches!(self.tokens.kinds[self.base], Kind::Units | Kind::Tolerance | Kind::Snap);
         let sign = matches!(self.kind(self.base + 1)?, Kind::Equals | Kind::Colon);
         let typed = format!("{} {}", self.text(self.base, self.base + 1), self.text(self.base + 2, self.end).trim_matches('"'));
@@ -115,12 +115,13 @@ impl Refusal<'_> {
         self.replaced("what is made gets a name", format!("{word} {name} = {}", self.text(self.base, self.end)))
     }
 
-    /// `import math`
+    /// An import of a module of Python: `import math`.
     pub(crate) fn python_import(&self) -> Option<Meant> {
         let imports = self.tokens.kinds[self.base] == Kind::Import || self.text(self.base, self.base + 1) == "from";
         let modules =
             ["math", "numpy", "cadquery", "build123d", "gmsh", "FreeCAD", "Part", "Draft", "rhinoscriptsyntax", "Rhino", "pygmsh", "solid"];
         let known = imports && self.kind(self.base + 1) == Some(Kind::Name) && modules.contains(&self.text(self.base + 1, self.base + 2));
+        // An example of functions and constants that need no import.
         known.then(|| Meant { why: "functions need no import, delete this line", typed: "sin(30deg) + pi".to_owned(), at: None })
     }
 
@@ -267,8 +268,8 @@ impl Refusal<'_> {
         works.then(|| Meant { why: "decimals follow a dot", typed, at: Some(self.tokens.stretch(before, behind)) })
     }
 
-    /// `[i * 2 for i in range(4)]`
-    pub(crate) fn loop_behind(&self) -> Option<Meant> {
+    /// A loop after its value: `[i * 2 for i in range(4)]`.
+    pub(crate) fn loop_after_value(&self) -> Option<Meant> {
         if self.kind(self.at) != Some(Kind::For) {
             return None;
         }
@@ -283,8 +284,8 @@ impl Refusal<'_> {
         works.then(|| Meant { why: "the loop comes first", typed, at: Some(self.tokens.stretch(open, end)) })
     }
 
-    /// `a if c else b`
-    pub(crate) fn choice_behind(&self) -> Option<Meant> {
+    /// A condition after its value: `a if c else b`.
+    pub(crate) fn condition_after_value(&self) -> Option<Meant> {
         if self.kind(self.at) != Some(Kind::If) || self.tokens.first[self.at] {
             return None;
         }

@@ -31,7 +31,7 @@ pub enum SizeFault {
         /// The setting.
         limit: MeshLimit,
         /// Its expression.
-        says: Origin,
+        written_at: Origin,
         /// The floor and its expression.
         floor: (f64, Origin),
         /// The size that the limit needs.
@@ -44,7 +44,7 @@ pub enum SizeFault {
         /// The setting.
         limit: MeshLimit,
         /// Its expression.
-        says: Origin,
+        written_at: Origin,
         /// The surface.
         surface: Origin,
         /// What was reached.
@@ -93,21 +93,21 @@ impl Describe for SizeFault {
                     .at(floor.1, "the smallest size allowed")
                     .help(format!("lower `min_size` to {} or less", say.length(size.0)))
             }
-            Self::FloorKeeps { limit, says, floor, needed, at } => {
+            Self::FloorKeeps { limit, written_at, floor, needed, at } => {
                 let (place, size) = (say.point(*at), say.length(*needed));
                 Report::new(format!("`min_size` prevents `{limit}` at {place}, which needs edges of {size}"))
-                    .at(*says, format!("needs {size}"))
+                    .at(*written_at, format!("needs {size}"))
                     .at(floor.1, format!("edges are at least {}", say.length(floor.0)))
                     .help(format!("`min_size` below {size}, or a larger `{limit}`"))
             }
-            Self::NotReached { limit, says, surface, reached, at } => {
+            Self::NotReached { limit, written_at, surface, reached, at } => {
                 let reached = match *limit {
                     _ if !reached.is_finite() => "no finite bound was found".to_owned(),
                     MeshLimit::AngleError => say.angle(*reached),
                     _ => say.length(*reached),
                 };
                 Report::new(format!("`{limit}` cannot be kept on {}: {reached} at {}", say.quoted(*surface, "a face"), say.point(*at)))
-                    .at(*says, "not kept")
+                    .at(*written_at, "not kept")
                     .at(*surface, "this face")
                     .help(format!("raise `{limit}`"))
             }

@@ -11,10 +11,10 @@ use crate::mesh::deviation::poles::from_pole;
 use crate::mesh::tri::isoline::Cut;
 use crate::mesh::tri::isoline_mesh::{Failure, IsolineMesher, IsolineResult};
 use crate::mesh::tri::limit_table;
+use crate::mesh::tri::no_mesh::NoMesh;
 use crate::mesh::tri::placement_settings::ISOLINES;
 use crate::mesh::tri::tree::Class;
 use crate::mesh::tri::triangulation::Triangulation;
-use crate::mesh::tri::trouble::Trouble;
 
 impl IsolineMesher<'_> {
     /// The triangulation of all nodes with the edges of borders and of the triangles that are sure, and which are inside.
@@ -28,9 +28,9 @@ impl IsolineMesher<'_> {
         edges.retain(|e| !given.contains(e));
         let mut all: Vec<[u32; 2]> = outline.edges().collect();
         all.extend(edges);
-        let all = points(&triangulation.xy, &all).map_err(|fault| Failure::Trouble(Trouble::Border(fault)))?;
+        let all = points(&triangulation.xy, &all).map_err(|fault| Failure::NoMesh(NoMesh::Border(fault)))?;
         let kept = inside(&all, outline);
-        if kept.contains(&true) { Ok((all, kept)) } else { Err(Failure::Trouble(Trouble::Empty)) }
+        if kept.contains(&true) { Ok((all, kept)) } else { Err(Failure::NoMesh(NoMesh::Empty)) }
     }
 
     /// Cells to cut for triangles beside borders that exceed the limits.

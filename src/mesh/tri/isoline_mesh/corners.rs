@@ -19,7 +19,7 @@ pub(crate) struct CellCorner {
     pub(crate) dropped: bool,
 }
 
-/// CellCorners by place, and how to find them.
+/// Corners by place, and how to find them.
 pub(crate) struct CellCorners {
     /// By u, then v.
     pub(crate) all: Vec<CellCorner>,
@@ -39,7 +39,7 @@ impl CellCorners {
         self.all.binary_search_by(|c| order(c.at, at, 0)).ok()
     }
 
-    /// CellCorners strictly between two places of one value of u (axis 1 runs) or v (axis 0 runs), ascending.
+    /// Corners strictly between two places of one value of u (axis 1 runs) or v (axis 0 runs), ascending.
     fn between(&self, from: DVec2, to: DVec2, axis: usize) -> Vec<usize> {
         let place = |k: usize| if axis == 1 { k } else { self.by_v[k] as usize };
         let first = partition(self.all.len(), |k| order(self.all[place(k)].at, from, 1 - axis).is_le());
@@ -59,7 +59,7 @@ fn partition(n: usize, holds: impl Fn(usize) -> bool) -> usize {
 }
 
 impl IsolineMesher<'_> {
-    /// CellCorners of cells and nodes of borders on their sides.
+    /// Corners of cells and nodes of borders on their sides.
     pub(crate) fn corners(&self) -> CellCorners {
         let mut all: Vec<CellCorner> = Vec::new();
         for cell in self.cells.all().iter().filter(|c| c.is_leaf() && c.class != Class::Exterior) {
@@ -116,7 +116,7 @@ impl IsolineMesher<'_> {
     }
 }
 
-/// CellCorners round a cell, counter-clockwise, with those on its sides; `None` where one of its own has no node.
+/// Corners round a cell, counter-clockwise, with those on its sides; `None` where one of its own has no node.
 pub(crate) fn polygon(corners: &CellCorners, (low, high): (DVec2, DVec2)) -> Option<Vec<usize>> {
     let own = box_corners((low, high)).map(|at| corners.of(at).filter(|k| corners.node[*k].is_some()));
     let [a, b, c, d] = [own[0]?, own[1]?, own[2]?, own[3]?];

@@ -12,9 +12,9 @@ use crate::mesh::tri::isoline::Cut;
 use crate::mesh::tri::isoline_mesh::{Failure, IsolineMesher, IsolineResult};
 use crate::mesh::tri::limit_table::{self, ChartTriangle};
 use crate::mesh::tri::marks::corners;
+use crate::mesh::tri::no_mesh::NoMesh;
 use crate::mesh::tri::placement_settings::ISOLINES;
 use crate::mesh::tri::tree::Class;
-use crate::mesh::tri::trouble::Trouble;
 use crate::surface::{Domain, Side};
 
 impl IsolineMesher<'_> {
@@ -25,7 +25,7 @@ impl IsolineMesher<'_> {
         while let Some(k) = open.pop() {
             job::poll();
             if self.cells.n_whole() > self.input.most || self.cells.all().len() > 8 * self.input.most {
-                return Err(Failure::Trouble(Trouble::Full));
+                return Err(Failure::NoMesh(NoMesh::TooManyNodes));
             }
             if self.cells.all()[k as usize].class == Class::Exterior {
                 continue;

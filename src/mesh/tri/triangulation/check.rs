@@ -8,7 +8,7 @@ use crate::mesh::tri::triangulation::{Ring, Triangulation};
 type Checked = Result<(), String>;
 
 impl Triangulation {
-    /// CellCorners turn the right way, neighbours know each other and agree about their side, what has no neighbour is locked, every node
+    /// Corners turn the right way, neighbours know each other and agree about their side, what has no neighbour is locked, every node
     /// knows a triangle of its own, those at an inner node go once round it, and the lists of free places hold what is not used.
     pub fn check(&self) -> Checked {
         self.check_lengths()?;

@@ -33,7 +33,7 @@ pub struct TriangleSide {
 }
 
 /// A triangle over a side of the border whose angles there have no larger tangent (about 3°) is no part of the surface: its points are
-/// about in a row, as those of a grid are where the plane sides, and in its narrow height the surface would bend without bounds.
+/// about in a row, as those of a grid are where the plane is tilted, and in its narrow height the surface would bend without bounds.
 const THIN: f64 = 0.05;
 
 /// The triangles without thin ones along the border, and those no higher than `least` (points that are in a row but for rounding), and

@@ -12,21 +12,21 @@ use crate::mesh::request::fault::{CountFault, FaceFault};
 use crate::mesh::tri::tree::MAX_DEPTH;
 
 /// The fault of a face that was not made.
-pub(crate) fn fault(face_input: &FaceInput, face: &Face, border: &FaceBorder, trouble: Trouble) -> Fault {
+pub(crate) fn fault(face_input: &FaceInput, face: &Face, border: &FaceBorder, reason: NoMesh) -> Fault {
     let surface = face_input.input.model.surfaces[face.surface.index()].surface.origin();
     let place = |n: u32| border.ids.get(n as usize).map_or(DVec3::ZERO, |id| face_input.points[*id as usize]);
-    match trouble {
-        Trouble::Border(PointsFault::Crosses(a, b)) => {
+    match reason {
+        NoMesh::Border(PointsFault::Crosses(a, b)) => {
             FaceFault::BordersCross { surface, at: 0.5 * (place(a) + place(b)), size: face.size.0 }.into()
         }
-        Trouble::Border(PointsFault::Same(a, _)) => FaceFault::BordersCross { surface, at: place(a), size: face.size.0 }.into(),
-        Trouble::Border(PointsFault::Flat) | Trouble::Empty => no_area(face_input, face),
-        Trouble::Deep(at) => FaceFault::TreeTooDeep { surface, at, levels: MAX_DEPTH }.into(),
-        Trouble::Odd => {
+        NoMesh::Border(PointsFault::Same(a, _)) => FaceFault::BordersCross { surface, at: place(a), size: face.size.0 }.into(),
+        NoMesh::Border(PointsFault::Flat) | NoMesh::Empty => no_area(face_input, face),
+        NoMesh::TreeTooDeep(at) => FaceFault::TreeTooDeep { surface, at, levels: MAX_DEPTH }.into(),
+        NoMesh::Odd => {
             let odd = face.segments().find(|s| face_input.nodes.count(*s) % 2 == 1).unwrap_or(0);
             CountFault::Odd { count: (0, Origin::NONE), surface, at: face_input.layout.point(odd, 0.5) }.into()
         }
-        Trouble::Full => {
+        NoMesh::TooManyNodes => {
             let plan = face_input.input.plan;
             let bent = !face_input.input.model.surfaces[face.surface.index()].surface.is_flat();
             let limit = plan.settings.chord_error.or(plan.settings.angle_error).filter(|_| bent).map(|limit| limit.1);
@@ -42,19 +42,19 @@ pub(crate) fn no_area(face_input: &FaceInput, face: &Face) -> Fault {
 }
 
 /// A result, or why there is none; the outer result is an interruption.
-pub type Outcome<T> = Result<std::result::Result<T, Trouble>>;
+pub type Outcome<T> = Result<std::result::Result<T, NoMesh>>;
 
 /// Why there is no mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Trouble {
+pub enum NoMesh {
     /// The border cannot be triangulated in the chart.
     Border(PointsFault),
     /// Nothing is inside the border.
     Empty,
     /// More nodes than allowed.
-    Full,
-    /// Lines inside part the odd counts of a border.
+    TooManyNodes,
+    /// Lines inside divide the border into parts with odd counts.
     Odd,
     /// A quadtree has to be deeper than it may be here.
-    Deep(DVec3),
+    TreeTooDeep(DVec3),
 }

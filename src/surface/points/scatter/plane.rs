@@ -1,4 +1,4 @@
-//! The plane of scattered points, their places in it, and those that are one.
+//! The plane of scattered points, their places in it, and duplicates among them.
 
 use glam::{DVec2, DVec3};
 
@@ -14,7 +14,7 @@ const SWEEPS: usize = 32;
 
 /// A plane with axes.
 #[derive(Clone, Copy, Debug)]
-pub struct Base {
+pub struct PlaneFrame {
     /// A point of it.
     pub center: DVec3,
     /// Unit vectors along x and y in it.
@@ -23,7 +23,7 @@ pub struct Base {
     pub normal: DVec3,
 }
 
-impl Base {
+impl PlaneFrame {
     fn coordinates(&self, p: DVec3) -> DVec3 {
         let arm = p - self.center;
         DVec3::new(arm.dot(self.axes[0]), arm.dot(self.axes[1]), arm.dot(self.normal))
@@ -38,12 +38,10 @@ impl Base {
 /// Points over a plane.
 pub struct Cloud {
     /// The plane.
-    pub base: Base,
-    /// Its normal.
-    pub normal: DVec3,
+    pub plane: PlaneFrame,
     /// x and y in the plane and the height over it, each point once, in the order of the points' coordinates.
     pub places: Vec<DVec3>,
-    /// How many points were left out because they are another one, and the first of them.
+    /// How many points were left out because they coincide with another point, and the first of them.
     pub merged: Option<(usize, DVec3)>,
 }
 
@@ -58,19 +56,19 @@ pub fn cloud(points: &[DVec3], along: Option<DVec3>, origin: Origin, tolerance: 
         }
         None => upward(flattest(&sorted, center)),
     };
-    let base = Base { center, axes: axes(normal), normal };
-    let all: Vec<DVec3> = sorted.iter().map(|p| base.coordinates(*p)).collect();
+    let plane = PlaneFrame { center, axes: axes(normal), normal };
+    let all: Vec<DVec3> = sorted.iter().map(|p| plane.coordinates(*p)).collect();
     let flat: Vec<DVec2> = all.iter().map(|p| p.truncate()).collect();
     if width(&flat) <= tolerance.point {
         return Err(on_one_line(&sorted, &flat, origin));
     }
-    let (kept, first) = once_each(&all, &sorted, origin, tolerance)?;
+    let (kept, first) = without_duplicates(&all, &sorted, origin, tolerance)?;
     let places: Vec<DVec3> = kept.iter().map(|k| all[*k]).collect();
     let merged = first.map(|at| (all.len() - kept.len(), at));
-    Ok(Cloud { base, normal, places, merged })
+    Ok(Cloud { plane, places, merged })
 }
 
-/// E665.
+/// E665: all points lie on one line.
 pub fn on_one_line(points: &[DVec3], flat: &[DVec2], origin: Origin) -> Fault {
     let (a, b) = farthest(flat);
     ScatterFault::OneLine {
@@ -89,43 +87,43 @@ fn farthest(flat: &[DVec2]) -> (usize, usize) {
     (a, from(a))
 }
 
-/// How far points are from a line through two of them that are far apart, at most.
+/// The largest distance of points from a line through two of them that are far apart.
 fn width(flat: &[DVec2]) -> f64 {
     let (a, b) = farthest(flat);
     let way = (flat[b] - flat[a]).normalize_or_zero();
     flat.iter().map(|p| way.perp_dot(*p - flat[a]).abs()).fold(0.0, f64::max)
 }
 
-/// The points that are no other ones, and the first that is; E675 where two lie over one another.
-fn once_each(all: &[DVec3], points: &[DVec3], origin: Origin, tolerance: &Tolerance) -> Result<(Vec<usize>, Option<DVec3>)> {
+/// Points without duplicates, and the first duplicate; E675 where two points lie over one another.
+fn without_duplicates(all: &[DVec3], points: &[DVec3], origin: Origin, tolerance: &Tolerance) -> Result<(Vec<usize>, Option<DVec3>)> {
     let mut order: Vec<usize> = (0..all.len()).collect();
     order.sort_by(|a, b| all[*a].x.total_cmp(&all[*b].x).then(a.cmp(b)));
-    let mut gone = vec![false; all.len()];
-    let mut over: Option<(usize, usize)> = None;
+    let mut is_duplicate = vec![false; all.len()];
+    let mut same_place: Option<(usize, usize)> = None;
     for (i, &a) in order.iter().enumerate() {
         job::poll();
         let near = order[i + 1..].iter().take_while(|b| all[**b].x - all[a].x <= tolerance.point);
         for &b in near.filter(|b| all[**b].truncate().distance(all[a].truncate()) <= tolerance.point) {
             let (first, last) = (a.min(b), a.max(b));
             if tolerance.same_point(points[a], points[b]) {
-                gone[last] = true;
-            } else if over.is_none_or(|pair| (first, last) < pair) {
-                over = Some((first, last));
+                is_duplicate[last] = true;
+            } else if same_place.is_none_or(|pair| (first, last) < pair) {
+                same_place = Some((first, last));
             }
         }
     }
-    if let Some((a, b)) = over {
-        return Err(ScatterFault::Over { surface: origin, a: points[a], b: points[b], tolerance: tolerance.point }.into());
+    if let Some((a, b)) = same_place {
+        return Err(ScatterFault::SamePlace { surface: origin, a: points[a], b: points[b], tolerance: tolerance.point }.into());
     }
-    let first = gone.iter().position(|g| *g).map(|k| points[k]);
-    Ok(((0..all.len()).filter(|k| !gone[*k]).collect(), first))
+    let first = is_duplicate.iter().position(|d| *d).map(|k| points[k]);
+    Ok(((0..all.len()).filter(|k| !is_duplicate[*k]).collect(), first))
 }
 
 /// Of the two normals of a plane the one that points up, or else along y, or x.
 fn upward(n: DVec3) -> DVec3 {
-    let level = |x: f64| x.abs() <= crate::base::tolerance::PARALLEL;
-    let leads = [n.z, n.y, n.x].into_iter().find(|x| !level(*x)).unwrap_or(1.0);
-    if leads < 0.0 { -n } else { n }
+    let is_zero = |x: f64| x.abs() <= crate::base::tolerance::PARALLEL;
+    let leading = [n.z, n.y, n.x].into_iter().find(|x| !is_zero(*x)).unwrap_or(1.0);
+    if leading < 0.0 { -n } else { n }
 }
 
 /// Axes across a normal, the first as near to the x-axis as can be (of a plane across it: to the y-axis).
