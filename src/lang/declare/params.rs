@@ -46,7 +46,7 @@ impl Cx<'_> {
         let given = self.machine.at(code.module).given.iter().rev().find(|g| g.0 == name.name).map(|g| g.1.clone());
         match given {
             None => Ok(default),
-            Some(given) => self.set_param(code, name, &subject, (ty, allowed), given),
+            Some(given) => self.set_param(code, name, &subject, ty, allowed, given),
         }
     }
 
@@ -56,7 +56,8 @@ impl Cx<'_> {
         code: Code<'_>,
         name: Bound,
         subject: &str,
-        (ty, allowed): (Ty, Option<&Allowed>),
+        ty: Ty,
+        allowed: Option<&Allowed>,
         given: Given,
     ) -> Result<Value, Halt> {
         let (value, file, span, words) = match given {

@@ -27,6 +27,14 @@ use crate::network::Chain;
 /// What a round looks at.
 const LOOKED_AT: &[Keyword] = &[Keyword::Use, Keyword::Point, Keyword::Curve];
 
+/// `snap 4mm`: the distance, model units, with its declaration and expression.
+#[derive(Clone, Copy)]
+struct SnapStatement {
+    distance: f64,
+    index: u32,
+    expr: ExprId,
+}
+
 /// For each declaration of a script the digest of what it became where that is something else now.
 type Moved = Vec<Option<Digest>>;
 
@@ -50,7 +58,7 @@ impl Cx<'_> {
             }
             self.evaluate_round(module, &rounds, round);
             let mut moved = self.snap_used(module, &rounds, round);
-            let sound = asked.is_none_or(|asked| self.snap_round(module, (&rounds, round), asked, &mut moved));
+            let sound = asked.is_none_or(|asked| self.snap_round(module, &rounds, round, asked, &mut moved));
             if moved.iter().any(Option::is_some) {
                 let each = moved.iter().enumerate().filter_map(|(i, moved)| Some((i, (*moved)?)));
                 all = Some(each.fold(all.unwrap_or_else(|| StableHasher::new("rounds")), |d, (i, moved)| d.number(i as u64).digest(moved)));
@@ -66,13 +74,13 @@ impl Cx<'_> {
     }
 
     /// The distance that a script's `snap` says, the declaration, and where the distance stands.
-    fn snap_distance(&mut self, module: ModuleId) -> Option<(f64, u32, ExprId)> {
+    fn snap_distance(&mut self, module: ModuleId) -> Option<SnapStatement> {
         let index = self.single(module, Keyword::Snap)?;
         let script = self.machine.at(module).script.clone();
         let DeclarationKind::Snap(expr) = script.declarations[index as usize].kind else { return None };
         let values = self.head(module, index, &[(expr, Ty::Quantity(Dim::LENGTH), "the distance")])?;
         let [Value::Number(distance)] = values.as_slice() else { return None };
-        Some((distance.value, index, expr))
+        Some(SnapStatement { distance: distance.value, index, expr })
     }
 
     /// Evaluates what a round looks at and the rounds before it changed. Curves that ask for the tolerance are not measured
@@ -101,13 +109,8 @@ impl Cx<'_> {
     }
 
     /// Snaps the curves of a round; `false` where they cannot be.
-    fn snap_round(
-        &mut self,
-        module: ModuleId,
-        (rounds, round): (&Rounds, u32),
-        (distance, index, expr): (f64, u32, ExprId),
-        moved: &mut Moved,
-    ) -> bool {
+    fn snap_round(&mut self, module: ModuleId, rounds: &Rounds, round: u32, asked: SnapStatement, moved: &mut Moved) -> bool {
+        let SnapStatement { distance, index, expr } = asked;
         let parts = stages::gather(self, module);
         let mut of: Vec<(u32, Keyword)> = Vec::new();
         let looked_at = &[Keyword::Point, Keyword::Curve];

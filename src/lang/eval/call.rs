@@ -19,6 +19,13 @@ use crate::lang::values::types::Ty;
 use crate::lang::values::value::{ModuleId, Value};
 use crate::lang::words::names::Name;
 
+/// A call of a builtin: what stands before its dot, if anything, and its arguments.
+struct BuiltinCall<'a> {
+    builtin: &'static Builtin,
+    first: Option<&'a Value>,
+    args: &'a [Arg],
+}
+
 impl Cx<'_> {
     /// What a name followed by `(` leads to, looked up once: a function, and whether fields have this name.
     pub(crate) fn word(&mut self, name: Name) -> (Option<&'static Builtin>, bool) {
@@ -140,7 +147,7 @@ impl Cx<'_> {
                 let mut diagnostic = self.locate(&fault, code, call_name(code, id), &blame);
                 self.advise(&fault, code, id, &blame, &mut diagnostic);
                 let of_value = fault.of::<ValueFault>().is_some();
-                let diagnostic = self.by_place((code, call_name(code, id)), (diagnostic, of_value), (builtin, before.as_ref(), args));
+                let diagnostic = self.by_place(code, id, diagnostic, of_value, &BuiltinCall { builtin, first: before.as_ref(), args });
                 let few = diagnostic.code.0 == "E402";
                 self.sink.reports.push(diagnostic);
                 if few {
@@ -155,12 +162,8 @@ impl Cx<'_> {
     /// A fault of a call in the words of the one who wrote it: arguments without a name go by their place, a field that things
     /// of other kinds have is offered under its own name, and a value outside its range comes with what it was made of.
     #[cold]
-    fn by_place(
-        &self,
-        (code, called): (Code<'_>, Span),
-        (mut diagnostic, of_value): (Diagnostic, bool),
-        (builtin, first, args): (&'static Builtin, Option<&Value>, &[Arg]),
-    ) -> Diagnostic {
+    fn by_place(&self, code: Code<'_>, id: ExprId, mut diagnostic: Diagnostic, of_value: bool, call: &BuiltinCall) -> Diagnostic {
+        let BuiltinCall { builtin, first, args } = *call;
         let named = |name: &str| args.iter().any(|a| a.name.is_some_and(|(n, _)| self.program.names.text(n) == name));
         let spoken = builtin.params.iter().position(|p| diagnostic.message.starts_with(&format!("`{}` ", p.name)));
         if let Some(k) = spoken.filter(|k| of_value && !named(builtin.params[*k].name)) {
@@ -178,7 +181,7 @@ impl Cx<'_> {
                 std::fields().filter(|f| f.params.first().is_some_and(|p| accepts(p.ty, value))).map(|f| f.name).collect::<Vec<_>>();
             let near = crate::lang::words::elsewhere::ours(builtin.name, fields.into_iter()).map(str::to_owned);
             if let Some(near) = near {
-                diagnostic = diagnostic.help(format!("`.{near}`")).put(called, near);
+                diagnostic = diagnostic.help(format!("`.{near}`")).put(call_name(code, id), near);
             }
         }
         diagnostic

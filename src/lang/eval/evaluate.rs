@@ -3,13 +3,12 @@
 use crate::base::bbox::Box3;
 use crate::base::fault::Severity;
 use crate::base::work::{self};
-use crate::lang::diag::diagnostic::Diagnostic;
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
 use crate::lang::eval::machine::{Code, DECLARATION_DEPTH, Site};
 use crate::lang::eval::memory::Dependencies;
+use crate::lang::eval::memory::Ended;
 use crate::lang::eval::memory::Sees;
-use crate::lang::eval::memory::Start;
 use crate::lang::eval::module::State;
 use crate::lang::syntax::ast::{Declaration, Expr, ExprId, Keyword};
 use crate::lang::values::origins::NO_MEMBER;
@@ -123,7 +122,7 @@ impl Cx<'_> {
             _ => Err(Halt::Broken),
         };
         let files = !waits && (sees == Sees::All || failed || !self.machine.asked.numbered);
-        self.put_back((module, index), (state, sees), start, (asked, seen, &said));
+        self.put_back(Ended { module, index, state, sees, start, said: &said }, asked, seen);
         if files {
             self.machine.filed.extend(said.into_iter().map(|d| (Some((module, index)), d)));
         }
@@ -131,17 +130,12 @@ impl Cx<'_> {
     }
 
     /// Ends what was counted for a declaration, keeps it for the next run, and goes on counting for the one around it.
-    fn put_back(
-        &mut self,
-        (module, index): (ModuleId, u32),
-        (state, sees): (State, Sees),
-        start: Start,
-        (around, seen, said): (Dependencies, Box3, &[Diagnostic]),
-    ) {
-        let mut asked = std::mem::replace(&mut self.machine.asked, around);
-        let own_seen = std::mem::replace(&mut self.seen, seen);
-        self.seen = self.seen.union(own_seen);
-        self.remember((module, index), (&state, sees), start, asked, (own_seen, said));
+    fn put_back(&mut self, ended: Ended, asked_around: Dependencies, seen_around: Box3) {
+        let mut asked = std::mem::replace(&mut self.machine.asked, asked_around);
+        let seen = std::mem::replace(&mut self.seen, seen_around);
+        self.seen = self.seen.union(seen);
+        self.remember(&ended, asked, seen);
+        let Ended { module, index, state, sees, start, .. } = ended;
         // Meshes are numbered anew in each run, so what holds one is not kept.
         asked.fleeting |= self.machine.at(module).script.declarations[index as usize].keyword == Keyword::Mesh;
         self.end(module, index, state, sees, asked);

@@ -4,8 +4,8 @@ use glam::DVec3;
 
 use crate::base::fault::{Edit, Fault, Say};
 use crate::base::tolerance::Tolerance;
+use crate::lang::diag::diagnostic::Diagnostic;
 use crate::lang::diag::diagnostic::Fix;
-use crate::lang::diag::diagnostic::{Diagnostic, FileId};
 use crate::lang::diag::span::Span;
 use crate::lang::eval::bind::Blame;
 use crate::lang::eval::context::Cx;
@@ -48,7 +48,7 @@ impl Cx<'_> {
         };
         let file = self.machine.at(code.module).file;
         let put = if ordered || filler.run.is_some() { &filler.typed } else { &filler.name };
-        let Some((span, text)) = self.inserted((code, id, file), blame, (a, b), put, ordered) else {
+        let Some((span, text)) = self.inserted(code, id, blame, (a, b), put, ordered) else {
             diagnostic.help = Some(what);
             return;
         };
@@ -61,16 +61,17 @@ impl Cx<'_> {
         diagnostic.fixes.push(Fix { file, span, edit: Edit::Put(text) });
     }
 
-    /// The stretch of a call that is replaced, and what by, so that a curve follows the first end or comes before the second.
+    /// The part of a call that is replaced, and what by, so that a curve follows the first end or comes before the second.
     fn inserted(
         &self,
-        (code, id, file): (Code<'_>, ExprId, FileId),
+        code: Code<'_>,
+        id: ExprId,
         blame: &Blame,
         (a, b): (&CurveEnd, &CurveEnd),
         put: &str,
         ordered: bool,
     ) -> Option<(Span, String)> {
-        let whole = code.span(id);
+        let (file, whole) = (self.machine.at(code.module).file, code.span(id));
         if let (true, Expr::Binary { a: left, .. }) = (ordered, code.expr(id)) {
             let span = code.span(*left);
             return Some((span, format!("{} + {put}", self.program.sources.text(file, span))));

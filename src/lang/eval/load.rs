@@ -17,7 +17,7 @@ use crate::lang::values::value::{ModuleId, Value};
 
 impl Cx<'_> {
     /// Adds a script as a module: parsed, its units known, its names bound once. `place` is the module that it stands for anew.
-    pub(crate) fn add_module(&mut self, name: &str, path: &str, text: Arc<str>, (label, place): (String, Option<ModuleId>)) -> ModuleId {
+    pub(crate) fn add_module(&mut self, name: &str, path: &str, text: Arc<str>, label: String, place: Option<ModuleId>) -> ModuleId {
         let file = self.program.sources.add(name, &*text);
         let (script, mistakes) = crate::lang::syntax::parse(&text, file, &mut self.program.names);
         self.machine.filed.extend(mistakes.into_iter().map(|d| (None, d)));
@@ -109,7 +109,7 @@ impl Cx<'_> {
         let parent = self.machine.at(code.module).label.clone();
         let label = if parent.is_empty() { label } else { format!("{parent}.{label}") };
         let before = self.loaded_by(code.module, code.declaration);
-        let id = self.add_module(&written, &resolved, text.into(), (label, before));
+        let id = self.add_module(&written, &resolved, text.into(), label, before);
         let module = self.machine.at_mut(id);
         module.parent = Some((code.module, code.declaration));
         let file = self.machine.at(code.module).file;

@@ -12,6 +12,7 @@ use crate::base::digest::{Digest, StableHasher};
 use crate::base::tolerance::Tolerance;
 use crate::lang::diag::diagnostic::{Diagnostic, FileId};
 use crate::lang::diag::span::Span;
+use crate::lang::eval::module::State;
 use crate::lang::values::origins::{Home, Origins};
 use crate::lang::values::plans::{CheckResult, MeshSpec, ReportTable};
 use crate::lang::values::value::{ModuleId, Value};
@@ -231,6 +232,17 @@ pub(crate) struct Start {
     pub checks: usize,
     pub reports: usize,
     pub meshes: usize,
+}
+
+/// An evaluation of a declaration that has ended.
+pub(crate) struct Ended<'a> {
+    pub module: ModuleId,
+    pub index: u32,
+    pub state: State,
+    pub sees: Sees,
+    pub start: Start,
+    /// Reports made on the way.
+    pub said: &'a [Diagnostic],
 }
 
 /// Which surfaces a declaration sees while it is evaluated.

@@ -8,7 +8,7 @@ use crate::base::digest::Digest;
 use crate::lang::diag::diagnostic::Diagnostic;
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::memory::Sees;
-use crate::lang::eval::memory::{Dependencies, Kept, Memory, attached, detached};
+use crate::lang::eval::memory::{Dependencies, Ended, Kept, Memory, attached, detached};
 use crate::lang::eval::module::{Stage, State};
 use crate::lang::syntax::ast::Keyword;
 use crate::lang::values::value::{MeshValue, ModuleId, Value};
@@ -118,21 +118,15 @@ impl Cx<'_> {
     }
 
     /// Keeps the state that an evaluation ended in, where the next run may take it over.
-    pub(crate) fn remember(
-        &mut self,
-        (module, index): (ModuleId, u32),
-        (state, sees): (&State, Sees),
-        start: Start,
-        asked: Dependencies,
-        (seen, said): (Box3, &[Diagnostic]),
-    ) {
+    pub(crate) fn remember(&mut self, ended: &Ended, asked: Dependencies, seen: Box3) {
+        let Ended { module, index, sees, start, said, .. } = *ended;
         if self.memory.is_none() {
             return;
         }
         let keys = self.keys(module);
         let Some(key) = keys.of[index as usize] else { return };
         let key = if asked.numbered { sees.key(key) } else { key };
-        match state {
+        match &ended.state {
             State::Suspended if !asked.fleeting => {
                 if let Some(memory) = &mut self.memory {
                     memory.suspend(key, seen);

@@ -53,7 +53,7 @@ struct Said {
 impl Cx<'_> {
     /// Parses the main script. What is wrong with it is found in [`Cx::finish`].
     pub fn load(&mut self, entry: &Entry) {
-        let main = self.add_module(entry.name, entry.path, entry.text.into(), (String::new(), None));
+        let main = self.add_module(entry.name, entry.path, entry.text.into(), String::new(), None);
         self.program.unit = self.machine.at(main).unit;
         self.give_all(main, entry.sets, entry.row);
     }

@@ -34,7 +34,7 @@ pub struct KeywordDoc {
     pub docs: &'static str,
 }
 
-const fn opens(word: &'static str, (kind, keyword): (Kind, Keyword), form: &'static str, docs: &'static str) -> KeywordDoc {
+const fn opens(word: &'static str, kind: Kind, keyword: Keyword, form: &'static str, docs: &'static str) -> KeywordDoc {
     KeywordDoc { word, kind, keyword: Some(keyword), form, docs }
 }
 
@@ -48,27 +48,31 @@ pub static WORDS: [KeywordDoc; 36] = [
     inside("as", Kind::As, "use \"ribs.loft\" as ribs", "The name of what is loaded."),
     opens(
         "check",
-        (Kind::Check, Keyword::Check),
+        Kind::Check,
+        Keyword::Check,
         "check condition\ncheck \"label\": condition\ncheck ribs[i].length > 1m for i in 0..5",
         "A condition that must hold; otherwise the run fails and writes nothing. Both sides, their difference and the tolerance are reported.",
     ),
     opens(
         "curve",
-        (Kind::Curve, Keyword::Curve),
+        Kind::Curve,
+        Keyword::Curve,
         "curve name = value\ncurve name for i in list = value",
         "A curve of the model's network, which gets a node where it ends or meets another. With `for` a family: `name[i]`.",
     ),
     inside("else", Kind::Else, "if condition then a else b", "The value when the condition is false."),
     opens(
         "export",
-        (Kind::Export, Keyword::Export),
+        Kind::Export,
+        Keyword::Export,
         "export things to \"file.ending\"\nexport things to \"file.ending\" { settings }\nexport plates[i] for i in 0..3 to \"plate_{i}.stl\"",
         "A file, in the format of its ending. All files of a run are put in place together, when every check has passed.",
     ),
     inside("false", Kind::False, "false", "A condition that does not hold."),
     opens(
         "fn",
-        (Kind::Fn, Keyword::Fn),
+        Kind::Fn,
+        Keyword::Fn,
         "fn name(a, b: type, c: type = default) = value\nfn name(a): type = value",
         "A function: its value depends on its arguments and the script's names alone. Types are optional; it may call itself.",
     ),
@@ -80,14 +84,16 @@ pub static WORDS: [KeywordDoc; 36] = [
     ),
     opens(
         "group",
-        (Kind::Group, Keyword::Group),
+        Kind::Group,
+        Keyword::Group,
         "group name of things",
         "Things under one name: a node or element set in every file that has sets.",
     ),
     inside("if", Kind::If, "if condition then a else b", "One of two values; in a comprehension, keeps the members for which it holds."),
     opens(
         "import",
-        (Kind::Import, Keyword::Import),
+        Kind::Import,
+        Keyword::Import,
         "import \"file.csv\" as name\nimport \"file.csv\" (header: true  unit: m) as name",
         "Data: csv, dat, txt, json, OBJ, STL, IGES or STEP (`part.curves[0]`, `part[\"deck\"]`). Curves of it join the network when a `curve` binds them.",
     ),
@@ -99,19 +105,22 @@ pub static WORDS: [KeywordDoc; 36] = [
     ),
     opens(
         "let",
-        (Kind::Let, Keyword::Let),
+        Kind::Let,
+        Keyword::Let,
         "let name = value\nlet name for i in list = value\nlet name = a in value",
         "A name for any value. Curves and surfaces of a `let` are construction geometry: not meshed, drawn or exported unless asked.",
     ),
     opens(
         "mesh",
-        (Kind::Mesh, Keyword::Mesh),
+        Kind::Mesh,
+        Keyword::Mesh,
         "mesh name of things { settings  on things { settings } }",
         "A mesh of surfaces, shells, curves or points, conforming over all their faces.",
     ),
     opens(
         "modeling",
-        (Kind::Modeling, Keyword::ModelingCurve),
+        Kind::Modeling,
+        Keyword::ModelingCurve,
         "modeling curve name = chain\nmodeling curve name for i in list = chain",
         "A chain of links of the network, from which surfaces are built: `south[A .. ribs[2]] + ribs[2][south .. B]`.",
     ),
@@ -133,21 +142,24 @@ pub static WORDS: [KeywordDoc; 36] = [
     inside("or", Kind::OrWord, "a or b", "True when either is; the right side is evaluated only when the left is false."),
     opens(
         "param",
-        (Kind::Param, Keyword::Param),
+        Kind::Param,
+        Keyword::Param,
         "param name = default\nparam name: type = default\nparam name = default in a to b\nparam name = word in [word, other]",
         "A value that may be set from outside by a literal: `--set name=value`, a column of a design table, or `use`. A range includes \
          both ends.",
     ),
-    opens("picture", (Kind::Picture, Keyword::Picture), "picture things to \"file.png\" { settings }", "A picture of things."),
+    opens("picture", Kind::Picture, Keyword::Picture, "picture things to \"file.png\" { settings }", "A picture of things."),
     opens(
         "point",
-        (Kind::Point, Keyword::Point),
+        Kind::Point,
+        Keyword::Point,
         "point name = (x, y, z)\npoint name for i in list = value",
         "A point of the model; of a pair z is 0. A node that curves make within the tolerance of it is this point.",
     ),
     opens(
         "report",
-        (Kind::Report, Keyword::Report),
+        Kind::Report,
+        Keyword::Report,
         "report value\nreport \"title\": value\nreport value for i in list",
         "A table in the summary and the JSON report: of records, lists, or the members of an entity. One entity shows its members \
          (those of its kind in the reference) a row each, with units; a family, a group or several things a row for each thing. A list \
@@ -155,19 +167,22 @@ pub static WORDS: [KeywordDoc; 36] = [
     ),
     opens(
         "shell",
-        (Kind::Shell, Keyword::Shell),
+        Kind::Shell,
+        Keyword::Shell,
         "shell name of surfaces",
         "Surfaces joined to one: a composite surface, or the boundary of a solid when it is closed.",
     ),
     opens(
         "snap",
-        (Kind::Snap, Keyword::Snap),
+        Kind::Snap,
+        Keyword::Snap,
         "snap length",
         "For measured data: curve ends closer than this are moved together before anything is built; what is made from them follows. Every move is reported.",
     ),
     opens(
         "surface",
-        (Kind::Surface, Keyword::Surface),
+        Kind::Surface,
+        Keyword::Surface,
         "surface name = value\nsurface name for i in list = value",
         "A surface of the model, with patches, edges and vertices. `-s` reverses its normal.",
     ),
@@ -175,16 +190,18 @@ pub static WORDS: [KeywordDoc; 36] = [
     inside("to", Kind::To, "export things to \"file.stl\"\nparam p = 3 in 1 to 5", "Where a file goes, or the last value allowed."),
     opens(
         "tolerance",
-        (Kind::Tolerance, Keyword::Tolerance),
+        Kind::Tolerance,
+        Keyword::Tolerance,
         "tolerance length\ntolerance length, angle",
         "When two points are one, and how sharp a turn is a kink. Default 1e-6 of the model's diagonal, rounded down to a power of ten, and \
          0.1deg.",
     ),
     inside("true", Kind::True, "true", "A condition that holds."),
-    opens("units", (Kind::Units, Keyword::Units), "units m", "The model unit: of bare lengths, reports and files. Default mm."),
+    opens("units", Kind::Units, Keyword::Units, "units m", "The model unit: of bare lengths, reports and files. Default mm."),
     opens(
         "use",
-        (Kind::Use, Keyword::Use),
+        Kind::Use,
+        Keyword::Use,
         "use \"ribs.loft\" as ribs\nuse \"ribs.loft\" (height: 3m) as ribs",
         "Another script as a module, with its own units, network and checks; its params may be given.",
     ),

@@ -247,7 +247,7 @@ impl Attempt<'_> {
         sizing.sharp = sharp.into_iter().reduce(Remark::sharper);
         sizing.mark_used(&counts);
         sizing.effects.mark_inside(input, &prepared);
-        let mut explanation = Explanation::new(input, self.layout, &sizing, &prepared, (&counts, &strip));
+        let mut explanation = Explanation::new(input, self.layout, &sizing, &prepared, &counts, &strip);
         explanation.lines.iter_mut().zip(blames).for_each(|(line, blame)| line.push_str(&blame.line));
         Ok(RoundResult::Done(Box::new(FinishedMesh { nodes, prepared, sizing, mesh, explanation })))
     }

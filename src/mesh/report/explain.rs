@@ -81,7 +81,7 @@ impl Explanation {
     }
 
     /// Of one set of faces with their counts.
-    pub fn new(input: &Input, layout: &Layout, sizing: &Sizing, prepared: &[FaceMesh], (counts, strip): (&[u32], &[usize])) -> Self {
+    pub fn new(input: &Input, layout: &Layout, sizing: &Sizing, prepared: &[FaceMesh], counts: &[u32], strip: &[usize]) -> Self {
         let mut notes = Self::default();
         for (face, ready) in layout.faces.iter().zip(prepared) {
             let first = input.model.patches_of(face.surface).next().map_or(0, |p| p.index());

@@ -94,10 +94,10 @@ impl Describe for EndFault {
 
     fn describe(&self, say: &dyn Say) -> Report {
         match self {
-            Self::EndsMiss { a, b, near, tolerance } => ends_miss(a, b, (*near, *tolerance), say),
+            Self::EndsMiss { a, b, near, tolerance } => ends_miss(a, b, *near, *tolerance, say),
             Self::BoundaryOpen { a, b, tolerance } => boundary_open(a, b, *tolerance, say),
-            Self::SnapFixed { a, b, snap, asked, settled } => snap_fixed([a, b], (*snap, *asked), *settled, say),
-            Self::Snapped { end, to, length, asked } => snapped(end, (*to, *length), *asked, say),
+            Self::SnapFixed { a, b, snap, asked, settled } => snap_fixed([a, b], *snap, *asked, *settled, say),
+            Self::Snapped { end, to, length, asked } => snapped(end, *to, *length, *asked, say),
             Self::NearMiss { end, other, nearest, other_end, tolerance } => near_miss(end, (*other, *nearest, *other_end), *tolerance, say),
         }
     }
@@ -108,7 +108,7 @@ fn moves_far(moved: f64, length: f64) -> bool {
     moved > SNAP_SHARE * length
 }
 
-fn snapped(end: &CurveEnd, (to, length): (DVec3, f64), asked: Origin, say: &dyn Say) -> Report {
+fn snapped(end: &CurveEnd, to: DVec3, length: f64, asked: Origin, say: &dyn Say) -> Report {
     let moved = end.at.distance(to);
     let far = moves_far(moved, length);
     let (from, onto) = say.pair(end.at, to);
@@ -137,7 +137,7 @@ fn rounded(x: f64) -> String {
     if x < 10.0 { format!("{x:.1}") } else { format!("{x:.0}") }
 }
 
-fn snap_fixed([a, b]: [&CurveEnd; 2], (snap, asked): (f64, Origin), settled: Option<Origin>, say: &dyn Say) -> Report {
+fn snap_fixed([a, b]: [&CurveEnd; 2], snap: f64, asked: Origin, settled: Option<Origin>, say: &dyn Say) -> Report {
     let gap = a.at.distance(b.at);
     let (one, other, at) = (say.quoted(a.of, "one curve"), say.quoted(b.of, "another"), say.point(a.at));
     let words = format!(
@@ -160,7 +160,7 @@ fn snap_fixed([a, b]: [&CurveEnd; 2], (snap, asked): (f64, Origin), settled: Opt
     }
 }
 
-fn ends_miss(a: &CurveEnd, b: &CurveEnd, (near, tolerance): (bool, f64), say: &dyn Say) -> Report {
+fn ends_miss(a: &CurveEnd, b: &CurveEnd, near: bool, tolerance: f64, say: &dyn Say) -> Report {
     let gap = a.at.distance(b.at);
     let wanted = typed(say, round_above(gap));
     let (one, other) = (say.quoted(a.of, "one curve"), say.quoted(b.of, "another"));

@@ -57,7 +57,7 @@ impl Describe for MeetingFault {
 
     fn describe(&self, say: &dyn Say) -> Report {
         match self {
-            Self::NoMeeting { a, b, near, tolerance } => no_meeting(*a, *b, (*near, *tolerance), say),
+            Self::NoMeeting { a, b, near, tolerance } => no_meeting(*a, *b, *near, *tolerance, say),
             Self::PointOff { of, point, nearest, tolerance } => {
                 let ((given, found), curve) = (say.pair(*point, *nearest), say.quoted(*of, "the curve"));
                 let away = say.length(point.distance(*nearest));
@@ -71,7 +71,7 @@ impl Describe for MeetingFault {
     }
 }
 
-fn no_meeting(a: (Origin, DVec3), b: (Origin, DVec3), (near, tolerance): (bool, f64), say: &dyn Say) -> Report {
+fn no_meeting(a: (Origin, DVec3), b: (Origin, DVec3), near: bool, tolerance: f64, say: &dyn Say) -> Report {
     let gap = a.1.distance(b.1);
     let wider = if near { format!("; {} would let them meet", typed(say, round_up(gap))) } else { String::new() };
     let (one, other) = (say.quoted(a.0, "one curve"), say.quoted(b.0, "the other"));

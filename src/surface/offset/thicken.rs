@@ -160,7 +160,8 @@ fn named(surface: &Surface, k: usize, tolerance: &Tolerance) -> Result<Option<Ch
 /// [`offset`] does, and with E671 where moved faces do not meet.
 pub fn thicken_all(
     faces: &[Surface],
-    (below, above, near): (f64, f64, f64),
+    (below, above): (f64, f64),
+    near: f64,
     turned: &dyn Fn(&[Surface], bool) -> bool,
     origin: Origin,
     tolerance: &Tolerance,

@@ -43,7 +43,7 @@ impl Given<'_> {
                 made.ribs.push(Rib { w, on_guides, chain: self.sections[k].chain.clone(), breaks: self.marks.rows[k].clone() });
                 continue;
             }
-            let found = self.between(made, &cut, (place, w), &on_guides, main);
+            let found = self.between(made, &cut, place, w, &on_guides, main);
             let (chain, breaks) = deform::curve(&found, self.origin);
             made.ribs.push(Rib { w, on_guides, chain, breaks });
         }
@@ -86,7 +86,7 @@ impl Given<'_> {
     }
 
     /// The section at a station, number `place` at the fraction `w`, from its neighbours.
-    fn between(&self, made: &mut SweepNet, cut: &Cut, (place, w): (usize, f64), on_guides: &[f64], main: &mut Main) -> Pieces {
+    fn between(&self, made: &mut SweepNet, cut: &Cut, place: usize, w: f64, on_guides: &[f64], main: &mut Main) -> Pieces {
         let station = main.station(w);
         let targets: Vec<DVec3> = made.order.iter().map(|&j| made.guides[j].chain.point(on_guides[j])).collect();
         let neighbours = self.neighbours(w, made.closed.0);

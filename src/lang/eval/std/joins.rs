@@ -14,8 +14,8 @@ use crate::model::{Contact, EdgeId, SurfaceId};
 use crate::surface::Surface;
 use crate::{builtins, fields};
 
-/// The stretches that faces of two lists share; without a second list all that the first one's share.
-fn shared(scene: &Scene, (a, b): (&[Surface], Option<&[Surface]>), (near, tolerance): (f64, &Tolerance)) -> Result<Vec<Contact>, Halt> {
+/// The segments that faces of two lists share; without a second list all that the first one's share.
+fn shared(scene: &Scene, a: &[Surface], b: Option<&[Surface]>, near: f64, tolerance: &Tolerance) -> Result<Vec<Contact>, Halt> {
     let places = |list: &[Surface]| Ok::<_, Halt>(scene.find_all(list)?.into_iter().map(|(id, _)| id).collect::<Vec<_>>());
     let ours = places(a)?;
     let theirs = b.map(places).transpose()?;
@@ -136,7 +136,7 @@ builtins! {
             }
             None => tolerance.point,
         };
-        let contacts = shared(&scene, (&a, b.as_deref()), (near, &tolerance))?;
+        let contacts = shared(&scene, &a, b.as_deref(), near, &tolerance)?;
         Ok(contacts.iter().map(|contact| record_of(cx, &scene, contact, &tolerance)).collect())
     };
 }

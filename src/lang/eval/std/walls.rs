@@ -78,7 +78,7 @@ builtins! {
                 let near = shell.snap.map_or(0.0, |snap| snap.0);
                 let inwards = |faces: &[Surface]| points_inwards(&faces.iter().map(|f| (f.clone(), false)).collect::<Vec<_>>()) == Some(true);
                 let turned = |faces: &[Surface], closed: bool| (closed && inwards(faces)) != shell.flip;
-                thicken_all(&faces, (reach.0, reach.1, near), &turned, origin, &tolerance).map_err(|fault| of_thickness(fault, &side, t))?
+                thicken_all(&faces, reach, near, &turned, origin, &tolerance).map_err(|fault| of_thickness(fault, &side, t))?
             }
         };
         notes.iter().for_each(|note| cx.say(note));

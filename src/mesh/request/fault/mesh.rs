@@ -200,7 +200,7 @@ impl Describe for MeshFault {
                     .note(format!("{place} away from sharp corners{more}"))
                     .help(help)
             }
-            Self::Lost { of, name, what, length, at, more } => lost(say, (*of, name), *what, (*length, *at, *more)),
+            Self::Lost { of, name, what, length, at, more } => lost(say, *of, name, *what, *length, *at, *more),
         }
     }
 }
@@ -227,7 +227,7 @@ fn grouped(count: u64) -> String {
 }
 
 /// The report of a part that is too small for its mesh: its length, place, and how many others there are.
-fn lost(say: &dyn Say, (of, mesh): (Origin, &str), what: LostPart, (length, at, more): (f64, DVec3, usize)) -> Report {
+fn lost(say: &dyn Say, of: Origin, mesh: &str, what: LostPart, length: f64, at: DVec3, more: usize) -> Report {
     let (part, as_what, left) = match what {
         LostPart::Hole { hole, surface } => {
             let of = say.quoted(surface, "its surface");
