@@ -30,7 +30,7 @@ impl Model {
         let surface = &if trimmed { surface.untrimmed() } else { surface.clone() };
         let Some(curve) = surface.iso(line, surface.origin(), tolerance)? else { return Ok(None) };
         let chain = Chain::of_curve(&curve);
-        // Between kinks: a stretch that is run at another speed would be missed.
+        // Between kinks: a part with another speed would be missed.
         let (us, vs) = surface.kinks();
         let kinks = if matches!(line, IsoLine::U(_)) { vs } else { us };
         let length = |t: f64| {

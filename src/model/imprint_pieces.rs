@@ -160,7 +160,7 @@ fn inner_points(surface: &Surface, tolerance: &Tolerance) -> Result<Vec<DVec3>> 
     Ok(places.into_iter().map(|p| surface.point(p.x, p.y)).collect())
 }
 
-/// A place on each of several rows across loops: a third of the way over the widest stretch inside.
+/// A place on each of several rows across loops: a third of the way over the widest interval inside.
 fn inner_places(outlines: &[Vec<DVec2>]) -> Vec<DVec2> {
     let all = outlines.iter().flatten();
     let (low, high) = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| (low.min(p.y), high.max(p.y)));

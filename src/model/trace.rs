@@ -11,9 +11,9 @@ use crate::base::tolerance::{EPSILON, MEASURE_ACCURACY, NEWTON_STEP, Tolerance};
 use crate::network::{Chain, Network};
 use crate::surface::{OneSided, PreparedSurface, Surface};
 
-/// Halvings of one stretch before its length is taken as it is; the line is cut at kinks, so this is far from reached.
+/// Halvings of one piece before its length is taken as it is; the line is cut at kinks, so this is far from reached.
 const DEPTH: u32 = 24;
-/// Stretches of one line at most; what is left of it then is taken as it is: values that are all rounding never settle.
+/// Pieces of one line at most; what is left of it then is taken as it is: values that are all rounding never settle.
 const STRETCHES: usize = 1 << 14;
 /// Newton steps of the inverse; bisection takes over before that.
 const STEPS: usize = 60;
@@ -31,7 +31,7 @@ pub struct Trace {
 // The others follow from these.
 crate::content!(Trace { prepared, from, to } but { panels, length });
 
-/// One stretch whose length is a known polynomial of the place.
+/// One piece whose length is a known polynomial of the place.
 #[derive(Clone, Debug)]
 struct Panel {
     t: (f64, f64),
@@ -54,7 +54,7 @@ impl Trace {
         let rounding = EPSILON * start.abs().max(end.abs()).max_element();
         let scale = start.distance(end).max(trace.speed(0.5)).max(rounding / MEASURE_ACCURACY);
         let stops = [vec![0.0], trace.prepared.surface().breaks_between(from, to), vec![1.0]].concat();
-        // A short span between two knots may be run through so fast that no sample of a longer stretch sees it.
+        // A short span between two knots may be run through so fast that no sample of a longer piece sees it.
         let mut open: Vec<(f64, f64, u32)> = stops.windows(2).rev().map(|w| (w[0], w[1], DEPTH)).collect();
         while let Some((a, b, left)) = open.pop() {
             job::poll();

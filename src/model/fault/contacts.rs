@@ -53,7 +53,7 @@ pub enum ContactFault {
         names: (String, String),
         /// How they touch.
         how: Touching,
-        /// In the middle of the longest stretch.
+        /// In the middle of the longest segment.
         at: DVec3,
         /// Whether faces that touch were asked to share nodes.
         imprint: bool,
