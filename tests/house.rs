@@ -98,11 +98,11 @@ const CEILINGS: &[(&str, usize)] = &[
     ("geometry", 6_050),
     ("network", 4_900),
     ("surface", 28_100),
-    ("model", 6_800),
+    ("model", 6_900),
     ("mesh", 27_700),
     ("io", 17_200),
     ("draw", 3_000),
-    ("lang", 29_700),
+    ("lang", 29_750),
     ("session", 11_900),
     ("cli", 4_900),
     ("library", 2_000),
@@ -111,10 +111,6 @@ const CEILINGS: &[(&str, usize)] = &[
 const LONGEST_FILE: usize = 400;
 
 const LONGEST_FUNCTION: usize = 80;
-
-/// Functions that are longer than [`LONGEST_FUNCTION`]: one that is shorter now has to be taken out, and none may be added.
-const LONG_FUNCTIONS: &[(&str, &str)] =
-    &[("src/model/measure_flat.rs", "flat_integral"), ("src/model/measure_trimmed.rs", "trimmed_integral")];
 
 struct Source {
     path: String,
@@ -292,17 +288,12 @@ fn functions(text: &str) -> Vec<(usize, &str, usize)> {
 
 #[test]
 fn functions_stay_small() {
-    let (sources, mut found, mut long) = (sources(), Vec::new(), Vec::new());
-    for source in &sources {
+    let mut found = Vec::new();
+    for source in &sources() {
         for (line, name, length) in functions(&source.text).into_iter().filter(|f| f.2 > LONGEST_FUNCTION) {
-            long.push((source.path.as_str(), name));
-            if !LONG_FUNCTIONS.contains(&(source.path.as_str(), name)) {
-                found.push(format!("{}:{line}: {name} has {length} lines, more than {LONGEST_FUNCTION}", source.path));
-            }
+            found.push(format!("{}:{line}: {name} has {length} lines, more than {LONGEST_FUNCTION}", source.path));
         }
     }
-    let shorter = LONG_FUNCTIONS.iter().filter(|known| !long.contains(known));
-    found.extend(shorter.map(|(path, name)| format!("{path}: {name} is no longer long, take it out of the list")));
     report("functions have a limit", found);
 }
 
