@@ -18,7 +18,7 @@ use lofting::network::flow_chains::{ChainFlow, of_chains};
 use lofting::network::graph::Input as NetInput;
 use lofting::network::{Chain, Network};
 use lofting::surface::Reparam;
-use lofting::surface::blended::coons::{self, Grid, Method, Settings};
+use lofting::surface::blended::coons::{self, BlendMethod, CoonsSettings, Grid};
 
 /// Two arcs and two splines round a square of 100.
 fn border() -> [Curve; 4] {
@@ -41,7 +41,7 @@ fn coons_face(c: &mut Criterion) {
     let curves = border();
     let chains: Vec<Chain> = curves.iter().map(Chain::of_curve).collect();
     let (flow, _) = of_chains(&chains, &ChainFlow::default(), &tolerance).expect("a closed border");
-    let settings = Settings { method: Method::Coons, reparam: Reparam::Smooth, origin: Origin::NONE };
+    let settings = CoonsSettings { method: BlendMethod::Coons, reparam: Reparam::Smooth, origin: Origin::NONE };
     let (surface, _) = coons::build(&Grid { chains: &chains, flow: &flow, poles: (None, None) }, &settings, &tolerance).expect("a face");
     let inputs = curves.iter().enumerate().map(|(k, curve)| NetInput { name: format!("c{k}"), curve: curve.clone(), cuts: Vec::new() });
     let network = Network::build(inputs.collect(), &[], &tolerance, &Job::new(), &mut Vec::new()).expect("a network");

@@ -16,12 +16,12 @@ use lofting::geometry::construct::spline::{Ends, Spline, spline};
 use lofting::model::measure;
 use lofting::network::Chain;
 use lofting::surface::Surface;
-use lofting::surface::blended::skin::{Across, Settings, skin};
-use lofting::surface::blended::skin_align::Section;
+use lofting::surface::blended::skin::{Across, SkinSettings, skin};
+use lofting::surface::blended::skin_align::SkinSection;
 use lofting::surface::blended::skin_ends::Leaving;
 use lofting::surface::swept::laws::Law;
 use lofting::surface::swept::sweep::sweep;
-use lofting::surface::swept::sweep_input::{Input, Method};
+use lofting::surface::swept::sweep_input::{Input, NetMethod};
 use networks::{Curve, NETWORKS, as_given, network};
 
 fn through(points: &[DVec3]) -> Chain {
@@ -75,12 +75,12 @@ fn builds(c: &mut Criterion) {
     });
 }
 
-fn sections() -> Vec<Section> {
+fn sections() -> Vec<SkinSection> {
     let at = |j: usize, k: usize| {
         let (x, y) = (k as f64 / 14.0, j as f64 / 99.0);
         DVec3::new(10.0 * x, 40.0 * y, (1.5 + y) * (2.5 * x + y).sin() + 0.4 * (5.0 * x - 3.0 * y).sin())
     };
-    (0..100).map(|j| Section::Curve(through(&(0..15).map(|k| at(j, k)).collect::<Vec<_>>()))).collect()
+    (0..100).map(|j| SkinSection::Curve(through(&(0..15).map(|k| at(j, k)).collect::<Vec<_>>()))).collect()
 }
 
 /// Twenty sections across one spine, and it.
@@ -101,14 +101,14 @@ fn spine() -> (Vec<Chain>, Chain) {
 
 fn swept() -> Surface {
     let (sections, spine) = spine();
-    let input = Input { sections: &sections, guides: &[spine], law: Law::Parallel, method: Method::Gordon, origin: Origin::NONE };
+    let input = Input { sections: &sections, guides: &[spine], law: Law::Parallel, method: NetMethod::Gordon, origin: Origin::NONE };
     sweep(&input, &Tolerance::new(1e-5, 40.0)).unwrap_or_else(|fault| panic!("{fault}")).0
 }
 
 fn sweeps(c: &mut Criterion) {
     let tolerance = Tolerance::new(1e-5, 40.0);
     let settings =
-        Settings { across: Across::Cubic, closed: false, ends: (Leaving::Plain, Leaving::Plain), smooth: None, origin: Origin::NONE };
+        SkinSettings { across: Across::Cubic, closed: false, ends: (Leaving::Plain, Leaving::Plain), smooth: None, origin: Origin::NONE };
     let all = || skin(&sections(), &settings, &tolerance).unwrap().0;
     c.bench_function("skin 100 sections", |b| {
         b.iter_batched(sections, |s| skin(&s, &settings, &tolerance).unwrap(), criterion::BatchSize::LargeInput);

@@ -11,7 +11,7 @@ use lofting::geometry::construct::build::{arc_through, spline};
 use lofting::geometry::{Ends, Spline};
 use lofting::model::measure;
 use lofting::network::{Chain, ChainFlow, of_chains};
-use lofting::surface::blended::coons::{Grid, Method, Settings, build};
+use lofting::surface::blended::coons::{BlendMethod, CoonsSettings, Grid, build};
 use lofting::surface::points::control_net::{Net, nurbs};
 use lofting::surface::{Nearest, Reparam, Surface, foot_within};
 
@@ -30,7 +30,7 @@ fn roof() -> Surface {
     ];
     let tolerance = Tolerance::new(1e-4, 150.0);
     let (flow, _) = of_chains(&chains, &ChainFlow::default(), &tolerance).expect("a closed boundary");
-    let settings = Settings { method: Method::Coons, reparam: Reparam::Smooth, origin: Origin::NONE };
+    let settings = CoonsSettings { method: BlendMethod::Coons, reparam: Reparam::Smooth, origin: Origin::NONE };
     build(&Grid { chains: &chains, flow: &flow, poles: (None, None) }, &settings, &tolerance).expect("a quadrilateral").0
 }
 

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use lofting::lang::assist::{About, Known, Script, hover_text};
+use lofting::lang::assist::{About, EditedScript, Known, hover_text};
 
 /// Longest time that one place may take.
 const LONGEST: Duration = Duration::from_millis(50);
@@ -18,8 +18,8 @@ fn open(_: &str, written: &str) -> Option<(String, String)> {
     Some((written.to_owned(), fs::read_to_string(folder().join(written)).ok()?))
 }
 
-fn script<'s>(text: &'s str, known: &'s Known) -> Script<'s> {
-    Script { text, path: "main.loft", open: &open, known, session: false }
+fn script<'s>(text: &'s str, known: &'s Known) -> EditedScript<'s> {
+    EditedScript { text, path: "main.loft", open: &open, known, session: false }
 }
 
 /// What is offered first; what is behind it is counted.

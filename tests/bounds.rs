@@ -15,7 +15,7 @@ use lofting::mesh::{Elements, FaceRange, Input, Mesh, Method as MeshMethod, Plan
 use lofting::model::topology::Named;
 use lofting::model::{Model, SurfaceId};
 use lofting::network::{Chain, ChainFlow, Network, of_chains};
-use lofting::surface::blended::coons::{Grid, Method, Settings, build};
+use lofting::surface::blended::coons::{BlendMethod, CoonsSettings, Grid, build};
 use lofting::surface::blended::gordon::{CurveNet, Named as NamedNet, gordon};
 use lofting::surface::core::plane;
 use lofting::surface::points::control_net::{Net, bezier, nurbs};
@@ -50,14 +50,14 @@ fn arc(a: DVec3, b: DVec3, c: DVec3) -> Chain {
     Chain::of_curve(&arc_through(a, c, b, Origin::NONE).unwrap())
 }
 
-fn spanned(chains: &[Chain], options: &ChainFlow, method: Method, reparam: Reparam) -> Surface {
+fn spanned(chains: &[Chain], options: &ChainFlow, method: BlendMethod, reparam: Reparam) -> Surface {
     let (flow, nodes) = of_chains(chains, options, &tolerance()).unwrap();
     let poles = (flow.poles.0.map(|n| nodes[n]), flow.poles.1.map(|n| nodes[n]));
-    build(&Grid { chains, flow: &flow, poles }, &Settings { method, reparam, origin: Origin::NONE }, &tolerance()).unwrap().0
+    build(&Grid { chains, flow: &flow, poles }, &CoonsSettings { method, reparam, origin: Origin::NONE }, &tolerance()).unwrap().0
 }
 
 /// A 3 × 3 grid of curves over a bumpy floor, unevenly spaced.
-fn net_of_curves(method: Method, reparam: Reparam) -> Surface {
+fn net_of_curves(method: BlendMethod, reparam: Reparam) -> Surface {
     let at = |x: f64, y: f64| p(x, y, 0.4 * (x * 1.3).sin() * (y * 0.9).cos() + 0.1 * x * y);
     let lines = [0.0, 0.8, 3.0];
     let steps: Vec<f64> = (0..=6).map(|k| f64::from(k) / 2.0).collect();
@@ -80,7 +80,7 @@ fn vase() -> Surface {
     let turns = [0.0, 1.0, 2.0, 4.0];
     let meridians = turns.map(|angle| through(&(0..=10).map(|k| at(angle, f64::from(k) / 10.0)).collect::<Vec<_>>()));
     let chains: Vec<Chain> = rings.into_iter().chain(meridians).collect();
-    spanned(&chains, &ChainFlow::default(), Method::Gordon, Reparam::Smooth)
+    spanned(&chains, &ChainFlow::default(), BlendMethod::Gordon, Reparam::Smooth)
 }
 
 /// A spline surface through four sections alone.
@@ -137,25 +137,25 @@ fn zoo() -> Vec<(&'static str, Surface)> {
     vec![
         (
             "coons",
-            spanned(&[wave.clone(), right.clone(), far.clone(), left.clone()], &ChainFlow::default(), Method::Coons, Reparam::Smooth),
+            spanned(&[wave.clone(), right.clone(), far.clone(), left.clone()], &ChainFlow::default(), BlendMethod::Coons, Reparam::Smooth),
         ),
         (
             "coons cubic",
-            spanned(&[wave.clone(), right.clone(), far.clone(), left.clone()], &ChainFlow::default(), Method::Cubic, Reparam::Smooth),
+            spanned(&[wave.clone(), right.clone(), far.clone(), left.clone()], &ChainFlow::default(), BlendMethod::Cubic, Reparam::Smooth),
         ),
-        ("coons 3x3", net_of_curves(Method::Coons, Reparam::Smooth)),
-        ("coons 3x3 creased", net_of_curves(Method::Linear, Reparam::Smooth)),
-        ("coons 3x3 linear", net_of_curves(Method::Coons, Reparam::Linear)),
-        ("transfinite", net_of_curves(Method::Lagrange, Reparam::Smooth)),
-        ("gordon", net_of_curves(Method::Gordon, Reparam::Smooth)),
-        ("gordon moved", net_of_curves(Method::Gordon, Reparam::Smooth).moved(&moved).flipped()),
+        ("coons 3x3", net_of_curves(BlendMethod::Coons, Reparam::Smooth)),
+        ("coons 3x3 creased", net_of_curves(BlendMethod::Linear, Reparam::Smooth)),
+        ("coons 3x3 linear", net_of_curves(BlendMethod::Coons, Reparam::Linear)),
+        ("transfinite", net_of_curves(BlendMethod::Lagrange, Reparam::Smooth)),
+        ("gordon", net_of_curves(BlendMethod::Gordon, Reparam::Smooth)),
+        ("gordon moved", net_of_curves(BlendMethod::Gordon, Reparam::Smooth).moved(&moved).flipped()),
         ("gordon closed", vase()),
         ("skin", skinned()),
-        ("bilinear", spanned(&[wave.clone(), right, far.clone(), left], &ChainFlow::default(), Method::Lagrange, Reparam::Smooth)),
-        ("trilateral", spanned(&sides, &ChainFlow::default(), Method::Coons, Reparam::Smooth)),
-        ("octant", spanned(&great, &ChainFlow::default(), Method::Coons, Reparam::Smooth)),
-        ("octant flipped", spanned(&great, &ChainFlow::default(), Method::Coons, Reparam::Smooth).flipped()),
-        ("octant with a pole", spanned(&great, &pole, Method::Coons, Reparam::Smooth)),
+        ("bilinear", spanned(&[wave.clone(), right, far.clone(), left], &ChainFlow::default(), BlendMethod::Lagrange, Reparam::Smooth)),
+        ("trilateral", spanned(&sides, &ChainFlow::default(), BlendMethod::Coons, Reparam::Smooth)),
+        ("octant", spanned(&great, &ChainFlow::default(), BlendMethod::Coons, Reparam::Smooth)),
+        ("octant flipped", spanned(&great, &ChainFlow::default(), BlendMethod::Coons, Reparam::Smooth).flipped()),
+        ("octant with a pole", spanned(&great, &pole, BlendMethod::Coons, Reparam::Smooth)),
         ("ruled", ruled(&wave, &far, o, &t).unwrap().0),
         ("ruled of rings", ruled(&ring, &oval, o, &t).unwrap().0),
         ("extrude", extrude::extrude(&wave, p(0.3, 2., 0.), o, &t).unwrap()),
@@ -172,7 +172,7 @@ fn zoo() -> Vec<(&'static str, Surface)> {
         ("nurbs", nurbs(&net, (3, 2), (None, None), o, &t).unwrap()),
         ("rational nurbs", nurbs(&rational, (2, 3), (None, None), o, &t).unwrap().flipped()),
         ("plane", plane::unbounded(p(0., 0., 1.), p(1., 1., 1.), o).unwrap()),
-        ("moved", net_of_curves(Method::Lagrange, Reparam::Smooth).moved(&moved).flipped()),
+        ("moved", net_of_curves(BlendMethod::Lagrange, Reparam::Smooth).moved(&moved).flipped()),
     ]
 }
 

@@ -11,7 +11,7 @@ use lofting::base::fault::Fault;
 use lofting::base::job::Job;
 use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
-use lofting::io::iges::{Options, open};
+use lofting::io::iges::{ReadOptions, open};
 use lofting::mesh::data::face_geometry::FaceNodes;
 use lofting::mesh::pipeline::build::build;
 use lofting::mesh::{Input, Mesh, Plan};
@@ -30,7 +30,7 @@ struct Skin {
 
 fn skin(file: &str) -> Skin {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(file);
-    let options = Options { model: 1.0, unit: "mm", file: None, origin: Origin::NONE };
+    let options = ReadOptions { model: 1.0, unit: "mm", file: None, origin: Origin::NONE };
     let opened = open(&std::fs::read(path).unwrap(), &options).map_err(|at| at.what).unwrap();
     let tolerance = Tolerance::from_diagonal(opened.reach().diagonal(), 1e-3);
     let mut part = opened.part(tolerance);

@@ -618,7 +618,7 @@ mod properties {
 /// What each mistake is told as.
 mod mistakes {
     use super::*;
-    use lofting::base::fault::{Fault, Plain};
+    use lofting::base::fault::{Fault, PlainWords};
     use lofting::base::tolerance::Tolerance;
 
     const NONE: Origin = Origin::NONE;
@@ -629,7 +629,7 @@ mod mistakes {
 
     fn check<T: std::fmt::Debug>(result: Result<T, Fault>, code: &str, words: &[&str]) {
         let fault = result.unwrap_err();
-        let report = fault.describe(&Plain);
+        let report = fault.describe(&PlainWords);
         assert_eq!(fault.code().0, code, "{report:?}");
         let all = format!("{} {:?} {:?}", report.message, report.help, report.labels);
         for word in words {

@@ -16,7 +16,7 @@ use lofting::base::origin::Origin;
 use lofting::base::quadrature::gauss_legendre;
 use lofting::base::tolerance::Tolerance;
 use lofting::io::files::fault::Malformed;
-use lofting::io::iges::{Options, Part, open};
+use lofting::io::iges::{Part, ReadOptions, open};
 use lofting::model::measure;
 use lofting::surface::{Domain, Surface};
 use serde_json::Value as Json;
@@ -24,10 +24,10 @@ use serde_json::Value as Json;
 use crate::support::long::count;
 use crate::support::mutate::{Random, mutated};
 
-const OPTIONS: Options = Options { model: 1.0, unit: "mm", file: None, origin: Origin::NONE };
+const OPTIONS: ReadOptions = ReadOptions { model: 1.0, unit: "mm", file: None, origin: Origin::NONE };
 
 /// Reads a file as a model in millimetres would.
-fn read(bytes: &[u8], options: &Options) -> Result<Part, String> {
+fn read(bytes: &[u8], options: &ReadOptions) -> Result<Part, String> {
     let opened = open(bytes, options).map_err(|at| format!("line {}: {}", at.line, at.what))?;
     let tolerance = Tolerance::from_diagonal(opened.reach().diagonal(), 1e-3);
     let mut part = opened.part(tolerance);
@@ -76,8 +76,8 @@ fn facts() -> Vec<(String, Vec<u8>, Json)> {
 /// moves all later fields by one, the unit among them. The file itself says millimetres twice.
 const MISREAD: &str = "testfile.igs";
 
-fn options_for(name: &str) -> Options {
-    Options { file: (name == MISREAD).then_some(25.4), ..OPTIONS }
+fn options_for(name: &str) -> ReadOptions {
+    ReadOptions { file: (name == MISREAD).then_some(25.4), ..OPTIONS }
 }
 
 fn numbers(list: &Json) -> Vec<f64> {

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use glam::DVec3;
-use lofting::base::fault::{Fault, Plain};
+use lofting::base::fault::{Fault, PlainWords};
 use lofting::base::job::Job;
 use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
@@ -17,7 +17,7 @@ use lofting::model::{Model, ShellRequest, SurfaceId};
 use lofting::network::flow_chains::{ChainFlow, of_chains};
 use lofting::network::graph::Input as NetInput;
 use lofting::network::{Chain, Network};
-use lofting::surface::blended::coons::{self, Grid, Method, Settings};
+use lofting::surface::blended::coons::{self, BlendMethod, CoonsSettings, Grid};
 use lofting::surface::swept::revolve::{axis_of, revolve};
 use lofting::surface::{Reparam, Surface};
 
@@ -43,15 +43,15 @@ fn chain(curve: &Curve) -> Chain {
     Chain::of_curve(curve)
 }
 
-fn over(chains: &[Chain], method: Method) -> Surface {
+fn over(chains: &[Chain], method: BlendMethod) -> Surface {
     let (flow, nodes) = of_chains(chains, &ChainFlow::default(), &tolerance()).unwrap();
     let poles = (flow.poles.0.map(|n| nodes[n]), flow.poles.1.map(|n| nodes[n]));
-    let settings = Settings { method, reparam: Reparam::Smooth, origin: Origin::NONE };
+    let settings = CoonsSettings { method, reparam: Reparam::Smooth, origin: Origin::NONE };
     coons::build(&Grid { chains, flow: &flow, poles }, &settings, &tolerance()).unwrap().0
 }
 
 fn coons_of(chains: &[Chain]) -> Surface {
-    over(chains, Method::Coons)
+    over(chains, BlendMethod::Coons)
 }
 
 /// Curves in a network, surfaces over them, glued.
@@ -167,8 +167,8 @@ fn figure_2_2() -> Scene {
     ];
     let lower = [join(&[part(7, split, 0.0), chain(&c[8])]), part(5, cross, 0.0), part(0, 0.5, 1.0), chain(&c[9])];
     // Written first is a curve along u.
-    let b = over(&[upper[3].clone(), upper[4].clone(), upper[0].clone(), upper[1].clone(), upper[2].clone()], Method::Lagrange);
-    let a = over(&[lower[2].clone(), lower[3].clone(), lower[0].clone(), lower[1].clone()], Method::Lagrange);
+    let b = over(&[upper[3].clone(), upper[4].clone(), upper[0].clone(), upper[1].clone(), upper[2].clone()], BlendMethod::Lagrange);
+    let a = over(&[lower[2].clone(), lower[3].clone(), lower[0].clone(), lower[1].clone()], BlendMethod::Lagrange);
     Scene::new(&c, vec![b, a])
 }
 
@@ -297,7 +297,7 @@ fn strips_pass_a_count_on_and_refuse_two() {
     plan.rules.push(count(2, 6, 2));
     let fault = scene.mesh(&plan).unwrap_err();
     assert_eq!(fault.code().0, "E702");
-    let report = fault.describe(&Plain);
+    let report = fault.describe(&PlainWords);
     assert!(report.labels.iter().any(|l| l.1 == "4 elements") && report.labels.iter().any(|l| l.1 == "6 elements"), "{report:?}");
 }
 
@@ -459,7 +459,7 @@ fn written_counts_too_coarse_for_a_limit_name_both() {
         ..Rule::on(Target::Chain(chain(&curves[0])), Origin(8))
     }];
     let fault = scene.mesh(&plan).unwrap_err();
-    let report = fault.describe(&Plain);
+    let report = fault.describe(&PlainWords);
     assert_eq!(fault.code().0, "E703");
     assert!(report.labels.len() == 2 && report.help.as_deref() == Some("count: 11"), "{report:?}");
     plan.rules[0].settings.count = Some((11, Origin(8)));

@@ -7,14 +7,14 @@ use lofting::base::tolerance::Tolerance;
 use lofting::geometry::construct::build::{arc_center, circle, line};
 use lofting::geometry::construct::spline::{Ends, Spline, spline};
 use lofting::network::Chain;
-use lofting::surface::blended::skin::{Across, Settings, skin};
-use lofting::surface::blended::skin_align::Section;
+use lofting::surface::blended::skin::{Across, SkinSettings, skin};
+use lofting::surface::blended::skin_align::SkinSection;
 use lofting::surface::blended::skin_ends::Leaving;
-use lofting::surface::swept::along::{Settings as AlongSettings, along};
+use lofting::surface::swept::along::{AlongSettings, along};
 use lofting::surface::swept::laws::Law;
 use lofting::surface::swept::revolve::Axis;
 use lofting::surface::swept::sweep::sweep;
-use lofting::surface::swept::sweep_input::{Input, Method};
+use lofting::surface::swept::sweep_input::{Input, NetMethod};
 use lofting::surface::{NetForm, Off, Surface, extrude, revolve};
 
 use crate::support::networks::{NETWORKS, as_given};
@@ -59,10 +59,11 @@ fn a_skin_of_a_hundred_sections_has_few_points_along_them() {
         let x = x + 0.02 * math::sin(7.0 * y + 3.0 * k as f64);
         DVec3::new(10.0 * x, 40.0 * y, (1.5 + y) * math::sin(2.5 * x + y) + 0.4 * math::sin(5.0 * x - 3.0 * y))
     };
-    let sections: Vec<Section> = (0..100).map(|j| Section::Curve(through(&(0..15).map(|k| at(j, k)).collect::<Vec<_>>()))).collect();
+    let sections: Vec<SkinSection> =
+        (0..100).map(|j| SkinSection::Curve(through(&(0..15).map(|k| at(j, k)).collect::<Vec<_>>()))).collect();
     let tolerance = Tolerance::new(1e-7 * 42.0, 42.0);
     let settings =
-        Settings { across: Across::Cubic, closed: false, ends: (Leaving::Plain, Leaving::Plain), smooth: None, origin: Origin::NONE };
+        SkinSettings { across: Across::Cubic, closed: false, ends: (Leaving::Plain, Leaving::Plain), smooth: None, origin: Origin::NONE };
     let (surface, _) = skin(&sections, &settings, &tolerance).unwrap();
     let form = surface.to_net(&tolerance).unwrap().unwrap();
     let Off::Bounded(bound) = form.off else { panic!("{:?}", form.off) };
@@ -106,7 +107,7 @@ fn what_is_rational_is_written_as_it_is() {
     let straight = guide(line(DVec3::new(1.0, 0.0, 0.0), DVec3::new(1.0, 5.0, 1.0), Origin::NONE).unwrap());
     let round = guide(arc_center(DVec3::ZERO, DVec3::new(1.0, 0.0, 0.0), 2.0, DVec3::Z, Origin::NONE).unwrap());
     let swept = |guides: &[Chain], law: Law| {
-        let input = Input { sections: std::slice::from_ref(&section), guides, law, method: Method::Gordon, origin: Origin::NONE };
+        let input = Input { sections: std::slice::from_ref(&section), guides, law, method: NetMethod::Gordon, origin: Origin::NONE };
         sweep(&input, &tolerance).unwrap_or_else(|fault| panic!("{fault}")).0
     };
     let parallel = swept(&straight, Law::Parallel);

@@ -13,13 +13,13 @@ use lofting::geometry::Motion;
 use lofting::geometry::construct::build::{arc_center, circle_start, line};
 use lofting::geometry::construct::spline::{Ends, Spline, spline};
 use lofting::network::Chain;
-use lofting::surface::blended::skin::{Across, Settings, skin};
-use lofting::surface::blended::skin_align::Section;
+use lofting::surface::blended::skin::{Across, SkinSettings, skin};
+use lofting::surface::blended::skin_align::SkinSection;
 use lofting::surface::blended::skin_ends::Leaving;
 use lofting::surface::swept::laws::Law;
 use lofting::surface::swept::revolve;
 use lofting::surface::swept::sweep::sweep;
-use lofting::surface::swept::sweep_input::{Input, Method};
+use lofting::surface::swept::sweep_input::{Input, NetMethod};
 use lofting::surface::{Closest, Nearest, Surface, extrude};
 
 use crate::support::networks;
@@ -106,7 +106,7 @@ fn swept_net(numbers: &mut Numbers) -> (Vec<Chain>, Vec<Chain>) {
 }
 
 fn swept(sections: &[Chain], guides: &[Chain], law: Law, scale: f64) -> Surface {
-    let input = Input { sections, guides, law, method: Method::Gordon, origin: Origin::NONE };
+    let input = Input { sections, guides, law, method: NetMethod::Gordon, origin: Origin::NONE };
     sweep(&input, &tolerance(scale)).unwrap_or_else(|fault| panic!("{fault}")).0
 }
 
@@ -171,12 +171,12 @@ fn gordon_surfaces_hold_their_curves_in_any_order_and_move_with_them() {
 }
 
 /// Open sections one above the other, or rings, perhaps with a point at an end.
-fn sections(numbers: &mut Numbers) -> Vec<Section> {
+fn sections(numbers: &mut Numbers) -> Vec<SkinSection> {
     let (n, round) = (2 + numbers.below(4), numbers.below(2) == 0);
-    let mut all: Vec<Section> = Vec::new();
+    let mut all: Vec<SkinSection> = Vec::new();
     for k in 0..n {
         let z = 60.0 * k as f64 + 10.0 * numbers.next();
-        all.push(Section::Curve(if round {
+        all.push(SkinSection::Curve(if round {
             let (center, r) = (DVec3::new(10.0 * numbers.next(), 10.0 * numbers.next(), z), 70.0 + 20.0 * numbers.next());
             let normal = DVec3::new(0.2 * numbers.next(), 0.2 * numbers.next(), 1.0).normalize();
             let start = center + normal.cross(DVec3::Y).normalize() * r;
@@ -186,13 +186,13 @@ fn sections(numbers: &mut Numbers) -> Vec<Section> {
         }));
     }
     if numbers.below(3) == 0 {
-        all.push(Section::Point(DVec3::new(60.0 * f64::from(!round), 0.0, 60.0 * n as f64 + 20.0)));
+        all.push(SkinSection::Point(DVec3::new(60.0 * f64::from(!round), 0.0, 60.0 * n as f64 + 20.0)));
     }
     all
 }
 
-fn skinned(sections: &[Section], ends: (Leaving, Leaving), scale: f64) -> Surface {
-    let settings = Settings { across: Across::Cubic, closed: false, ends, smooth: None, origin: Origin::NONE };
+fn skinned(sections: &[SkinSection], ends: (Leaving, Leaving), scale: f64) -> Surface {
+    let settings = SkinSettings { across: Across::Cubic, closed: false, ends, smooth: None, origin: Origin::NONE };
     skin(sections, &settings, &tolerance(scale)).unwrap_or_else(|fault| panic!("{fault}")).0
 }
 
@@ -208,7 +208,7 @@ fn skins_hold_their_sections_in_any_direction_and_move_with_them() {
         };
         let ends = (end(), end());
         let surface = skinned(&given, ends, 1.0);
-        let chains: Vec<Chain> = given.iter().filter_map(|s| if let Section::Curve(c) = s { Some(c.clone()) } else { None }).collect();
+        let chains: Vec<Chain> = given.iter().filter_map(|s| if let SkinSection::Curve(c) = s { Some(c.clone()) } else { None }).collect();
         // The line of constant v at each section runs along it, all of it.
         let lines: Vec<f64> = surface.net_curves().iter().map(|c| c.at).collect();
         for (chain, v) in chains.iter().zip(&lines) {
@@ -217,22 +217,23 @@ fn skins_hold_their_sections_in_any_direction_and_move_with_them() {
             found.sort_by(f64::total_cmp);
             assert!(found.windows(2).all(|w| w[1] - w[0] < 0.1), "{seed} {ends:?}: {found:?} of a section");
         }
-        let back =
-            |s: &Section, turn: bool| if let (Section::Curve(c), true) = (s, turn) { Section::Curve(c.reversed()) } else { s.clone() };
-        let turned: Vec<Section> = given.iter().enumerate().map(|(k, s)| back(s, k > 0 && numbers.below(2) == 0)).collect();
+        let back = |s: &SkinSection, turn: bool| {
+            if let (SkinSection::Curve(c), true) = (s, turn) { SkinSection::Curve(c.reversed()) } else { s.clone() }
+        };
+        let turned: Vec<SkinSection> = given.iter().enumerate().map(|(k, s)| back(s, k > 0 && numbers.below(2) == 0)).collect();
         let far = apart(&surface, &skinned(&turned, ends, 1.0));
         assert!(far <= 1e-9 * SIZE, "{seed} {ends:?}: {far:e} when sections are turned");
         // From the last section to the first one it is the same.
         let along = |leaving: Leaving| if let Leaving::Along(d) = leaving { Leaving::Along(-d) } else { leaving };
-        let upside: Vec<Section> = given.iter().rev().cloned().collect();
+        let upside: Vec<SkinSection> = given.iter().rev().cloned().collect();
         let other = skinned(&upside, (along(ends.1), along(ends.0)), 1.0);
         if !chains[0].is_closed(&tolerance(1.0)) {
             assert!(apart(&surface, &other) <= 1e-9 * SIZE, "{seed} {ends:?}: {:e} upside down", apart(&surface, &other));
         }
         let (motion, scale) = numbers.motion();
-        let carried = |s: &Section| match s {
-            Section::Curve(c) => Section::Curve(c.moved(&motion)),
-            Section::Point(p) => Section::Point(motion.point(*p)),
+        let carried = |s: &SkinSection| match s {
+            SkinSection::Curve(c) => SkinSection::Curve(c.moved(&motion)),
+            SkinSection::Point(p) => SkinSection::Point(motion.point(*p)),
         };
         let way = |leaving: Leaving| match leaving {
             Leaving::Along(d) => Leaving::Along(motion.vector(d).normalize()),
@@ -289,7 +290,7 @@ fn bounds_of_skins_of_many_sections_come_near() {
         let wave = 12.0 * sin((25.0 * i + 7.0 * k).to_radians()) + 4.0 * cos((11.0 * k).to_radians());
         DVec3::new(10.0 * i, 5.0 * k, wave)
     };
-    let section = |k: u32| Section::Curve(through(&(0..15_u32).map(|i| point(f64::from(i), f64::from(k))).collect::<Vec<_>>()));
+    let section = |k: u32| SkinSection::Curve(through(&(0..15_u32).map(|i| point(f64::from(i), f64::from(k))).collect::<Vec<_>>()));
     let surface = skinned(&(0..99).map(section).collect::<Vec<_>>(), (Leaving::Plain, Leaving::Plain), 500.0);
     // Cells along u and v in the whole, and how far the bounds may be from the largest values found.
     for (cells, most) in [((28, 98), [2.5, 4.0, 6.0]), ((112, 392), [1.5, 1.5, 2.0])] {

@@ -12,7 +12,7 @@ use file::{can, file};
 use lofting::base::bbox::Box3;
 use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
-use lofting::io::cad::part::{Options, Part};
+use lofting::io::cad::part::{Part, ReadOptions};
 use lofting::io::files::fault::Malformed;
 use lofting::io::step::open;
 use lofting::model::measure;
@@ -21,7 +21,7 @@ use serde_json::Value as Json;
 use crate::support::long::count;
 use crate::support::mutate::{Random, mutated};
 
-const OPTIONS: Options = Options { model: 1.0, unit: "mm", file: None, origin: Origin::NONE };
+const OPTIONS: ReadOptions = ReadOptions { model: 1.0, unit: "mm", file: None, origin: Origin::NONE };
 
 /// A file as a model in millimetres would read it, with the faces that it lacks.
 fn whole(bytes: &[u8]) -> Part {

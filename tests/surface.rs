@@ -9,7 +9,7 @@ use lofting::geometry::{Curve, Ends, Motion, Spline};
 use lofting::model::measure;
 use lofting::network::flow::Member;
 use lofting::network::{Chain, ChainFlow, Flow, FlowKind, of_chains};
-use lofting::surface::blended::coons::{Grid, Method, Settings, build};
+use lofting::surface::blended::coons::{BlendMethod, CoonsSettings, Grid, build};
 use lofting::surface::blended::plane_face;
 use lofting::surface::points::interpolate::{Tangents, fitted};
 use lofting::surface::swept::extrude;
@@ -62,8 +62,8 @@ fn quad_flow(along_u: Vec<Member>, along_v: Vec<Member>) -> Flow {
     Flow { kind: FlowKind::Quadrilateral, along_u, along_v, closed_u: false, closed_v: false, poles: (None, None), overhangs: Vec::new() }
 }
 
-fn built(chains: &[Chain], flow: &Flow, method: Method, reparam: Reparam) -> Surface {
-    let settings = Settings { method, reparam, origin: Origin::NONE };
+fn built(chains: &[Chain], flow: &Flow, method: BlendMethod, reparam: Reparam) -> Surface {
+    let settings = CoonsSettings { method, reparam, origin: Origin::NONE };
     build(&Grid { chains, flow, poles: (None, None) }, &settings, &tolerance()).unwrap().0
 }
 
@@ -85,7 +85,7 @@ fn coons_c1(reparam: Reparam) -> (Surface, f64) {
     let u1 = (crossing(0) + crossing(1) + crossing(2)) / 3.0;
     let along_u = (0..3).map(|n| member(n, &[0.0, crossing(n), 1.0])).collect();
     let along_v = (0..3).map(|m| member(3 + m, &[0.0, at(3 + m, node(m, 1)), 1.0])).collect();
-    (built(&chains, &quad_flow(along_u, along_v), Method::Coons, reparam), u1)
+    (built(&chains, &quad_flow(along_u, along_v), BlendMethod::Coons, reparam), u1)
 }
 
 #[test]
@@ -124,7 +124,7 @@ fn four_lines_span_the_bilinear_patch() {
     let [a, b, c, d] = [DVec3::ZERO, DVec3::new(4.0, 0.0, 0.0), DVec3::new(4.0, 3.0, 1.0), DVec3::new(0.0, 3.0, 0.0)];
     let chains: Vec<Chain> = [(a, b), (b, c), (d, c), (a, d)].map(|(p, q)| Chain::of_curve(&line(p, q, Origin::NONE).unwrap())).to_vec();
     let flow = quad_flow(vec![member(0, &[0.0, 1.0]), member(2, &[0.0, 1.0])], vec![member(3, &[0.0, 1.0]), member(1, &[0.0, 1.0])]);
-    let surface = built(&chains, &flow, Method::Lagrange, Reparam::Smooth);
+    let surface = built(&chains, &flow, BlendMethod::Lagrange, Reparam::Smooth);
     let mut grid = vec![DVec3::ZERO; 12];
     let (us, vs) = ([0.0, 0.25, 0.5, 1.0], [0.0, 0.3, 1.0]);
     surface.grid(&us, &vs, &mut grid);
@@ -139,10 +139,10 @@ fn four_lines_span_the_bilinear_patch() {
 }
 
 /// The surface over chains, its flow found from their meetings.
-fn spanned(chains: &[Chain], options: &ChainFlow, method: Method) -> (Surface, Vec<Fault>) {
+fn spanned(chains: &[Chain], options: &ChainFlow, method: BlendMethod) -> (Surface, Vec<Fault>) {
     let (flow, nodes) = of_chains(chains, options, &tolerance()).unwrap();
     let poles = (flow.poles.0.map(|n| nodes[n]), flow.poles.1.map(|n| nodes[n]));
-    let settings = Settings { method, reparam: Reparam::Smooth, origin: Origin::NONE };
+    let settings = CoonsSettings { method, reparam: Reparam::Smooth, origin: Origin::NONE };
     build(&Grid { chains, flow: &flow, poles }, &settings, &tolerance()).unwrap()
 }
 
@@ -160,7 +160,7 @@ fn three_great_circles_give_the_uniform_trilateral() {
     let data = reference("flow_types");
     let (x, y, z) = (DVec3::X, DVec3::Y, DVec3::Z);
     let chains = [quarter(x, y), quarter(y, z), quarter(x, z)];
-    let (surface, _) = spanned(&chains, &ChainFlow::default(), Method::Coons);
+    let (surface, _) = spanned(&chains, &ChainFlow::default(), BlendMethod::Coons);
     assert_eq!((surface.domain(), surface.flow().as_str()), (Domain::Triangle, "uniform trilateral"));
     for sample in data["uniform_trilateral"]["samples"].as_array().unwrap() {
         let l = vec3(&sample["l"]);
@@ -182,7 +182,7 @@ fn a_named_pole_gives_the_degenerate_trilateral() {
     let (x, y, z) = (DVec3::X, DVec3::Y, DVec3::Z);
     let chains = [quarter(x, y), quarter(z, y), quarter(z, x)];
     let options = ChainFlow { pole: Some(z), ..ChainFlow::default() };
-    let (surface, _) = spanned(&chains, &options, Method::Lagrange);
+    let (surface, _) = spanned(&chains, &options, BlendMethod::Lagrange);
     assert_eq!(surface.flow(), "degenerate trilateral");
     for sample in data["degenerate_trilateral_bilinear"]["samples"].as_array().unwrap() {
         close(surface.point(number(&sample["u"]), number(&sample["v"])), vec3(&sample["point"]), 1e-12, "sample");
@@ -209,7 +209,7 @@ fn grid_parameters_of_a_reversed_curve() {
         straight([4.0, 0.0, 0.0], [4.0, 2.0, 0.0]),
     ];
     let (flow, _) = of_chains(&chains, &ChainFlow::default(), &tolerance()).unwrap();
-    let surface = built(&chains, &flow, Method::Coons, Reparam::Linear);
+    let surface = built(&chains, &flow, BlendMethod::Coons, Reparam::Linear);
     assert_eq!(surface.breaks().0, [number(&data["u_1"])]);
     for (key, value) in data["f_2"].as_object().unwrap() {
         let u: f64 = key.trim_start_matches("u=").parse().unwrap();
@@ -243,7 +243,7 @@ fn figure() -> (Surface, Surface) {
         joint(&[c6.slice(2.0 / 3.0, 1.0, &t).unwrap(), c7]),
     ];
     let a = [c1.slice(0.5, 1.0, &t).unwrap(), c10, joint(&[c8.slice(on_arc, 0.0, &t).unwrap(), c9]), c6.slice(2.0 / 3.0, 0.0, &t).unwrap()];
-    (spanned(&b, &ChainFlow::default(), Method::Lagrange).0, spanned(&a, &ChainFlow::default(), Method::Lagrange).0)
+    (spanned(&b, &ChainFlow::default(), BlendMethod::Lagrange).0, spanned(&a, &ChainFlow::default(), BlendMethod::Lagrange).0)
 }
 
 #[test]
@@ -432,7 +432,7 @@ fn curves_in_any_order_and_direction_give_one_surface() {
     let surface = |chains: &[Chain]| {
         let (flow, nodes) = of_chains(chains, &ChainFlow::default(), &t).unwrap();
         assert!(nodes.len() == 9 && flow.poles == (None, None));
-        let settings = Settings { method: Method::Coons, reparam: Reparam::Smooth, origin: Origin::NONE };
+        let settings = CoonsSettings { method: BlendMethod::Coons, reparam: Reparam::Smooth, origin: Origin::NONE };
         build(&Grid { chains, flow: &flow, poles: (None, None) }, &settings, &t).unwrap().0
     };
     let original = surface(&chains);
@@ -470,7 +470,7 @@ fn motions_and_flips_commute_with_everything() {
     let (fan, _) = spanned(
         &[quarter(DVec3::X, DVec3::Y), quarter(DVec3::Y, DVec3::Z), quarter(DVec3::X, DVec3::Z)],
         &ChainFlow::default(),
-        Method::Coons,
+        BlendMethod::Coons,
     );
     let wall = extrude(&straight([0.0, 0.0, 0.0], [1.0, 2.0, 0.0]), DVec3::new(0.0, 0.3, 2.0), Origin::NONE, &tolerance()).unwrap();
     let rotation = Motion::rotation(DVec3::new(1.0, 2.0, 3.0), DVec3::new(1.0, 2.0, -1.0).normalize(), 0.83);
@@ -538,7 +538,7 @@ fn closed_flows_have_a_seam() {
         let (s, c) = (quarter_turn * f64::from(k) + 0.1).sin_cos();
         chains.push(straight([c, s, 0.0], [1.5 * c, 1.5 * s, 2.0]));
     }
-    let (surface, notes) = spanned(&chains, &ChainFlow::default(), Method::Coons);
+    let (surface, notes) = spanned(&chains, &ChainFlow::default(), BlendMethod::Coons);
     assert!(notes.is_empty());
     assert_eq!((surface.flow().as_str(), surface.closed()), ("quadrilateral closed in u", (true, false)));
     for v in [0.0, 0.4, 1.0] {
@@ -562,7 +562,7 @@ fn ends_over_the_border_are_trimmed_with_a_note() {
         straight([0.0, 0.0, 0.0], [0.0, 2.0, 0.0]),
         straight([4.0, 0.0, 0.0], [4.0, 2.0, 0.0]),
     ];
-    let (surface, notes) = spanned(&chains, &ChainFlow::default(), Method::Coons);
+    let (surface, notes) = spanned(&chains, &ChainFlow::default(), BlendMethod::Coons);
     let codes: Vec<&str> = notes.iter().map(|n| n.code().0).collect();
     assert_eq!(codes, ["N609"]);
     close(surface.point(0.5, 0.0), DVec3::new(2.0, 0.0, 0.0), 1e-12, "half of what is left");
@@ -716,7 +716,7 @@ fn areas_volumes_and_moments_of_known_bodies() {
     let octant = spanned(
         &[quarter(DVec3::X, DVec3::Y), quarter(DVec3::Y, DVec3::Z), quarter(DVec3::X, DVec3::Z)],
         &ChainFlow::default(),
-        Method::Coons,
+        BlendMethod::Coons,
     )
     .0;
     let (whole, moved) = (measure::area(&octant), measure::area(&octant.moved(&Motion::scaling(DVec3::ONE, 10.0))));

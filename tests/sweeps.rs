@@ -9,11 +9,11 @@ use lofting::geometry::Motion;
 use lofting::geometry::construct::build::{arc_center, line};
 use lofting::geometry::construct::spline::{Ends, Spline, spline};
 use lofting::network::Chain;
-use lofting::surface::swept::along::{Settings as AlongSettings, along};
+use lofting::surface::swept::along::{AlongSettings, along};
 use lofting::surface::swept::laws::Law;
 use lofting::surface::swept::revolve;
 use lofting::surface::swept::sweep::sweep;
-use lofting::surface::swept::sweep_input::{Input, Method};
+use lofting::surface::swept::sweep_input::{Input, NetMethod};
 use lofting::surface::{Surface, extrude};
 
 use crate::support::surfaces;
@@ -63,7 +63,7 @@ fn net(seed: u64) -> (Vec<Chain>, Vec<Chain>) {
 }
 
 fn made(sections: &[Chain], guides: &[Chain], law: Law) -> Surface {
-    let input = Input { sections, guides, law, method: Method::Gordon, origin: Origin::NONE };
+    let input = Input { sections, guides, law, method: NetMethod::Gordon, origin: Origin::NONE };
     sweep(&input, &tolerance()).unwrap_or_else(|fault| panic!("{fault}")).0
 }
 

@@ -30,7 +30,7 @@ struct Helper {
 }
 
 /// A thread helps until this is dropped.
-struct Entered {
+struct HelpingThread {
     // First: what is pending is charged while the thread still helps the job.
     _budget: work::Charging,
     _job: job::Entered,
@@ -41,9 +41,9 @@ impl Helper {
         Self { watched: job::watched(), budget: work::budget() }
     }
 
-    fn enter(&self) -> Entered {
+    fn enter(&self) -> HelpingThread {
         let job = self.watched.enter();
-        Entered { _budget: work::Charging::to(self.budget.clone()), _job: job }
+        HelpingThread { _budget: work::Charging::to(self.budget.clone()), _job: job }
     }
 }
 
@@ -54,7 +54,7 @@ pub fn map<T: Send>(n: usize, f: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
         use rayon::prelude::*;
         if let Some(pool) = pool() {
             let helper = Helper::of_this_thread();
-            let item = |_: &mut Entered, k: usize| {
+            let item = |_: &mut HelpingThread, k: usize| {
                 job::poll();
                 f(k)
             };
@@ -81,7 +81,7 @@ pub fn chunks_mut<T: Send>(items: &mut [T], size: usize, f: impl Fn(usize, &mut 
         use rayon::prelude::*;
         if let Some(pool) = pool() {
             let helper = Helper::of_this_thread();
-            let one = |_: &mut Entered, (k, part): (usize, &mut [T])| {
+            let one = |_: &mut HelpingThread, (k, part): (usize, &mut [T])| {
                 job::poll();
                 f(k, part);
             };

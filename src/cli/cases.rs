@@ -4,11 +4,11 @@ use super::summary::{Grid, cell, maybe};
 use crate::session::report::{Case, Cell, Report, Table};
 
 /// Names and texts of the cells of one line.
-type Line = Vec<(String, String)>;
+type CaseCells = Vec<(String, String)>;
 
 /// The table of all cases.
 pub fn text(cases: &[Case], color: bool) -> String {
-    let lines: Vec<Line> = cases.iter().map(line).collect();
+    let lines: Vec<CaseCells> = cases.iter().map(line).collect();
     let mut head: Vec<String> = Vec::new();
     for line in &lines {
         let mut at = 0;
@@ -38,11 +38,11 @@ pub fn text(cases: &[Case], color: bool) -> String {
 }
 
 /// One line: the row, its params, how it went, counts, and the reports of one row. Columns of numbers begin with `>`.
-fn line(case: &Case) -> Line {
+fn line(case: &Case) -> CaseCells {
     let report = &case.report;
     let said = |severity: &str| report.diagnostics.iter().filter(|d| d.severity == severity).map(|d| d.count).sum();
     let nonzero = |n: usize| if n == 0 { String::new() } else { n.to_string() };
-    let mut line: Line = vec![("case".to_owned(), case.case.clone())];
+    let mut line: CaseCells = vec![("case".to_owned(), case.case.clone())];
     line.extend(case.set.iter().map(|set| (format!(">{}", set.name), set.value.clone())));
     line.push(("result".to_owned(), if report.ok { "fine" } else { "FAILED" }.to_owned()));
     let failed: Vec<&str> = report.checks.iter().filter(|c| !c.pass).map(|c| c.label.as_str()).collect();
@@ -66,7 +66,7 @@ fn line(case: &Case) -> Line {
 }
 
 /// The cells of reports that have one row; a single value goes by the title of its report, as does what has the name of another column.
-fn reported(report: &Report, line: &mut Line) {
+fn reported(report: &Report, line: &mut CaseCells) {
     for table in report.reports.iter().filter(|table| table.rows.len() == 1) {
         for (k, column) in table.columns.iter().enumerate() {
             let Some(value) = table.rows[0].get(k) else { continue };

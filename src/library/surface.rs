@@ -14,9 +14,9 @@ use crate::lang::values::units::radians;
 use crate::model::measure;
 use crate::network::{self, Chain, ChainFlow};
 use crate::session::report::DiagnosticRow;
-use crate::surface::blended::coons::{self, Grid, Method, Settings};
+use crate::surface::blended::coons::{self, BlendMethod, CoonsSettings, Grid};
 use crate::surface::blended::skin::{self, Across};
-use crate::surface::blended::skin_align::Section;
+use crate::surface::blended::skin_align::SkinSection;
 use crate::surface::blended::skin_ends::Leaving;
 use crate::surface::faults::LoopFault;
 use crate::surface::{self, Domain, Reparam};
@@ -59,13 +59,13 @@ fn made(curves: Vec<Curve>, tolerance: &Tolerance, make: impl FnOnce(&[Chain]) -
     Ok(Surface { surface, name: None, curves, notes })
 }
 
-fn over_grid(chains: &[Chain], method: Method, tolerance: &Tolerance) -> Made {
+fn over_grid(chains: &[Chain], method: BlendMethod, tolerance: &Tolerance) -> Made {
     if let Some(places) = network::given_twice(chains, tolerance) {
         return Err(LoopFault::Twice { of: chains[places.1].origin(), argument: "curves", places, hole: None }.into());
     }
     let (flow, nodes) = network::of_chains(chains, &ChainFlow::default(), tolerance)?;
     let poles = (flow.poles.0.map(|n| nodes[n]), flow.poles.1.map(|n| nodes[n]));
-    let settings = Settings { method, reparam: Reparam::Smooth, origin: fresh() };
+    let settings = CoonsSettings { method, reparam: Reparam::Smooth, origin: fresh() };
     coons::build(&Grid { chains, flow: &flow, poles }, &settings, tolerance)
 }
 
@@ -74,13 +74,13 @@ impl Surface {
     /// A Coons surface through a closed loop or a grid of curves; it contains every one of them, and the first runs along u.
     pub fn coons<'a>(curves: impl IntoIterator<Item = &'a Curve>, tolerance: &Tolerance) -> Result<Self, Error> {
         let curves = curves.into_iter().cloned().collect();
-        made(curves, tolerance, |chains| over_grid(chains, Method::Coons, tolerance))
+        made(curves, tolerance, |chains| over_grid(chains, BlendMethod::Coons, tolerance))
     }
 
     /// A transfinite surface through a grid of curves: one polynomial blend over the whole grid.
     pub fn transfinite<'a>(curves: impl IntoIterator<Item = &'a Curve>, tolerance: &Tolerance) -> Result<Self, Error> {
         let curves = curves.into_iter().cloned().collect();
-        made(curves, tolerance, |chains| over_grid(chains, Method::Lagrange, tolerance))
+        made(curves, tolerance, |chains| over_grid(chains, BlendMethod::Lagrange, tolerance))
     }
 
     /// Straight lines between two curves.
@@ -117,10 +117,10 @@ impl Surface {
     pub fn skin<'a>(sections: impl IntoIterator<Item = &'a Curve>, tolerance: &Tolerance) -> Result<Self, Error> {
         let curves = sections.into_iter().cloned().collect();
         made(curves, tolerance, |chains| {
-            let sections: Vec<Section> = chains.iter().cloned().map(Section::Curve).collect();
+            let sections: Vec<SkinSection> = chains.iter().cloned().map(SkinSection::Curve).collect();
             skin::said_well(&sections, false, tolerance)?;
             let ends = (Leaving::Plain, Leaving::Plain);
-            let settings = skin::Settings { across: Across::Cubic, closed: false, ends, smooth: None, origin: fresh() };
+            let settings = skin::SkinSettings { across: Across::Cubic, closed: false, ends, smooth: None, origin: fresh() };
             skin::skin(&sections, &settings, tolerance)
         })
     }

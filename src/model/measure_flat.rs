@@ -37,10 +37,10 @@ fn gaps(walk: &Boundary) -> impl Iterator<Item = (DVec3, DVec3)> {
 }
 
 /// A run of a boundary: its chain by number, and the fractions it is run between.
-type Run = (usize, f64, f64);
+type ChainRun = (usize, f64, f64);
 
 /// Runs of the chains between the places at which they are less than smooth.
-fn runs(walk: &Boundary) -> Vec<Run> {
+fn runs(walk: &Boundary) -> Vec<ChainRun> {
     let of_chain = |(k, (chain, from, to)): (usize, &(Chain, f64, f64))| {
         let mut stops = crate::surface::chain_breaks(chain);
         stops.insert(0, 0.0);
@@ -66,7 +66,7 @@ struct FlatFace {
 
 impl FlatFace {
     /// `None` where the boundary has no area.
-    fn new(walk: Boundary, runs: &[Run], rule: &[(f64, f64)]) -> Option<Self> {
+    fn new(walk: Boundary, runs: &[ChainRun], rule: &[(f64, f64)]) -> Option<Self> {
         let origin = walk.first().map(|(chain, from, _)| chain.point(*from))?;
         // The area vector says where the plane is and which side is up.
         let vector = runs.iter().fold(DVec3::ZERO, |sum, &(k, a, b)| {
@@ -91,19 +91,19 @@ impl FlatFace {
     }
 
     /// F db along a run.
-    fn round<const N: usize>(&self, rule: &[(f64, f64)], (k, a, b): Run, f: &impl Fn(&Jet2) -> Sums<N>) -> Sums<N> {
+    fn round<const N: usize>(&self, rule: &[(f64, f64)], (k, a, b): ChainRun, f: &impl Fn(&Jet2) -> Sums<N>) -> Sums<N> {
         self.steps(rule, (k, a, b), f, |x| x)
     }
 
     /// The sum of the absolute values of F db along a run.
-    fn size<const N: usize>(&self, rule: &[(f64, f64)], (k, a, b): Run, f: &impl Fn(&Jet2) -> Sums<N>) -> Sums<N> {
+    fn size<const N: usize>(&self, rule: &[(f64, f64)], (k, a, b): ChainRun, f: &impl Fn(&Jet2) -> Sums<N>) -> Sums<N> {
         self.steps(rule, (k, a, b), f, f64::abs)
     }
 
     fn steps<const N: usize>(
         &self,
         rule: &[(f64, f64)],
-        (k, a, b): Run,
+        (k, a, b): ChainRun,
         f: &impl Fn(&Jet2) -> Sums<N>,
         each: impl Fn(f64) -> f64,
     ) -> Sums<N> {
@@ -143,7 +143,7 @@ pub fn flat_integral<const N: usize>(
             (0..N).for_each(|i| sum[i] += step * value[i]);
         }
     }
-    let mut open: Vec<(Run, u32)> = runs.iter().rev().map(|run| (*run, 0)).collect();
+    let mut open: Vec<(ChainRun, u32)> = runs.iter().rev().map(|run| (*run, 0)).collect();
     while let Some((run, depth)) = open.pop() {
         job::poll();
         let (rough, value) = (face.round(&rules[0], run, integrand.value), face.round(&rules[1], run, integrand.value));

@@ -7,7 +7,7 @@ use crate::base::fault::Say;
 use crate::base::origin::Origin;
 use crate::io::Files;
 use crate::io::files::fault::FormatFault;
-use crate::io::iges::write::{self, Scale, Shown, Thing};
+use crate::io::iges::write::{self, IgesScale, IgesShape, IgesThing};
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
 use crate::lang::eval::scene::Scene;
@@ -27,17 +27,17 @@ pub(super) fn iges(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<
         None => None,
     };
     let colors = Colors::of(cx);
-    let one = |cx: &Cx, of: Origin, shown: Shown| {
+    let one = |cx: &Cx, of: Origin, shown: IgesShape| {
         let color = match &shown {
-            Shown::Curve(chain) => colors.of_curve(chain),
-            Shown::Surface(surface) => colors.of_surface(surface),
-            Shown::Point(_) | Shown::Faces(_) => None,
+            IgesShape::Curve(chain) => colors.of_curve(chain),
+            IgesShape::Surface(surface) => colors.of_surface(surface),
+            IgesShape::Point(_) | IgesShape::Faces(_) => None,
         };
-        Thing { name: cx.name(of), group: String::new(), layers: Vec::new(), color, shown }
+        IgesThing { name: cx.name(of), group: String::new(), layers: Vec::new(), color, shown }
     };
     let face = |cx: &Cx, surface: &Surface| {
-        let thing = one(cx, surface.origin(), Shown::Surface(surface.clone()));
-        Thing { name: cx.name_in_file(surface).unwrap_or(thing.name), ..thing }
+        let thing = one(cx, surface.origin(), IgesShape::Surface(surface.clone()));
+        IgesThing { name: cx.name_in_file(surface).unwrap_or(thing.name), ..thing }
     };
     let mut things = Vec::with_capacity(spec.things.len());
     for (value, origin) in &spec.things {
@@ -45,24 +45,24 @@ pub(super) fn iges(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<
         let first = things.len();
         match value {
             Value::Vector(p, Dim::LENGTH) | Value::Node(p) => {
-                things.push(Thing { name: String::new(), ..one(cx, *origin, Shown::Point(*p)) })
+                things.push(IgesThing { name: String::new(), ..one(cx, *origin, IgesShape::Point(*p)) })
             }
-            Value::Curve(chain) => things.push(one(cx, chain.origin(), Shown::Curve(chain.clone()))),
+            Value::Curve(chain) => things.push(one(cx, chain.origin(), IgesShape::Curve(chain.clone()))),
             Value::Edge(home, edge) => {
                 let chain = super::plan::chain_of(cx, home, edge)?;
                 let name = super::plan::edge_name(cx, &chain, edge);
-                things.push(Thing { name, ..one(cx, *origin, Shown::Curve(chain)) });
+                things.push(IgesThing { name, ..one(cx, *origin, IgesShape::Curve(chain)) });
             }
             Value::Surface(surface) => things.push(face(cx, surface)),
             Value::Shell(shell) => match &scene {
                 Some(scene) => {
                     let name = cx.body_said(shell).map_or(&shell.name, |[_, only]| only).to_string();
                     let faces = whole(cx, scene, shell, &tolerance, &colors)?;
-                    things.push(Thing { name, ..one(cx, *origin, Shown::Faces(Box::new(faces))) });
+                    things.push(IgesThing { name, ..one(cx, *origin, IgesShape::Faces(Box::new(faces))) });
                 }
                 None => {
                     let group = cx.body_said(shell).map_or(&shell.name, |[_, only]| only);
-                    things.extend(shell.surfaces.iter().map(|s| Thing { group: group.to_string(), ..face(cx, s) }));
+                    things.extend(shell.surfaces.iter().map(|s| IgesThing { group: group.to_string(), ..face(cx, s) }));
                 }
             },
             other => {
@@ -72,7 +72,7 @@ pub(super) fn iges(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<
         }
         things[first..].iter_mut().for_each(|thing| thing.layers = layers.clone());
     }
-    let scale = Scale { unit, model: scale.unwrap_or(1.0), tolerance };
+    let scale = IgesScale { unit, model: scale.unwrap_or(1.0), tolerance };
     let sheet = write::sheet(&things, &scale).map_err(|what| {
         let help = help(spec, as_faces);
         FormatFault::Unsupported { of: spec.path_origin, what, help, edits: Vec::new() }

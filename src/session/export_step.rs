@@ -10,7 +10,7 @@ use crate::base::origin::Origin;
 use crate::io::cad::assembly::Node;
 use crate::io::cad::bodies::Faces;
 use crate::io::files::fault::FormatFault;
-use crate::io::step::write::{self, Measured, Scale, Schema, Setup, Shown, Thing};
+use crate::io::step::write::{self, Measured, Schema, Setup, StepScale, StepShape, StepThing};
 use crate::io::{Files, Loss};
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
@@ -27,7 +27,7 @@ pub(super) fn step(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<
     let (unit, scale) = unit_of(cx, spec);
     let tolerance = cx.tolerance()?;
     let schema = spec.schema.as_ref().and_then(|(word, _)| Schema::of(word)).unwrap_or_default();
-    let setup = Setup { schema, unit, scale: Scale { model: scale.unwrap_or(1.0), tolerance } };
+    let setup = Setup { schema, unit, scale: StepScale { model: scale.unwrap_or(1.0), tolerance } };
     let surfaces: Vec<&Surface> = spec.things.iter().flat_map(|(value, _)| surfaces_of(value)).collect();
     let scene = Scene::of(cx, ModuleId::MAIN, surfaces)?;
     let colors = Colors::of(cx);
@@ -35,21 +35,21 @@ pub(super) fn step(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<
     let mut things = Vec::with_capacity(spec.things.len());
     for (value, origin) in &spec.things {
         let (name, shown, measured) = match value {
-            Value::Vector(p, Dim::LENGTH) | Value::Node(p) => (String::new(), Shown::Point(*p), Measured::default()),
-            Value::Curve(chain) => (cx.name(chain.origin()), Shown::Curve(chain.clone()), Measured::default()),
+            Value::Vector(p, Dim::LENGTH) | Value::Node(p) => (String::new(), StepShape::Point(*p), Measured::default()),
+            Value::Curve(chain) => (cx.name(chain.origin()), StepShape::Curve(chain.clone()), Measured::default()),
             Value::Edge(home, edge) => {
                 let chain = super::plan::chain_of(cx, home, edge)?;
-                (super::plan::edge_name(cx, &chain, edge), Shown::Curve(chain), Measured::default())
+                (super::plan::edge_name(cx, &chain, edge), StepShape::Curve(chain), Measured::default())
             }
             Value::Surface(surface) => {
                 let measured = Measured { area: Some(measure::area(surface)), volume: None };
                 let name = cx.name_in_file(surface).unwrap_or_else(|| cx.surface_name(surface));
-                (name, Shown::Faces(Box::new(lone(cx, &scene, surface, &tolerance, &colors)?)), measured)
+                (name, StepShape::Faces(Box::new(lone(cx, &scene, surface, &tolerance, &colors)?)), measured)
             }
             Value::Shell(shell) => {
                 let faces = whole(cx, &scene, shell, &tolerance, &colors)?;
                 let measured = measured(&faces);
-                (cx.body_said(shell).map_or(&shell.name, |[own, _]| own).to_string(), Shown::Faces(Box::new(faces)), measured)
+                (cx.body_said(shell).map_or(&shell.name, |[own, _]| own).to_string(), StepShape::Faces(Box::new(faces)), measured)
             }
             other => {
                 return Err(unsupported(*origin, format!("STEP holds points, curves, surfaces and shells, not {}", other.ty().words())));
@@ -57,7 +57,7 @@ pub(super) fn step(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<
         };
         let color = if let Value::Curve(chain) = value { colors.of_curve(chain) } else { None };
         let node = tree.node(cx, value);
-        things.push(Thing { name, layers: layers(cx, value)?, shown, color, measured, node });
+        things.push(StepThing { name, layers: layers(cx, value)?, shown, color, measured, node });
     }
     let file = spec.path.rsplit('/').next().unwrap_or(&spec.path);
     let name = file.rsplit_once('.').map_or(file, |(stem, _)| stem);

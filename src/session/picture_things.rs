@@ -15,7 +15,7 @@ use crate::lang::eval::halt::Halt;
 use crate::lang::eval::pipeline::Sound;
 use crate::lang::eval::scene::Scene;
 use crate::lang::values::plans::PictureSpec;
-use crate::lang::values::value::{Home, MeshValue, Value};
+use crate::lang::values::value::{EntityHome, MeshValue, Value};
 use crate::mesh::Mesh;
 use crate::model::{PatchId, SharedEdge, SurfaceId};
 use crate::network::{Chain, Network};
@@ -95,7 +95,7 @@ pub(super) fn sort(cx: &mut Cx, values: &[(Value, Origin)], scene: &Scene, toler
 }
 
 /// The surface model that edges and patches of a script are numbered in.
-fn own(cx: &mut Cx, home: &Home) -> Result<Scene, Halt> {
+fn own(cx: &mut Cx, home: &EntityHome) -> Result<Scene, Halt> {
     Ok(Scene { model: cx.model(home)?, network: cx.network_of(home)? })
 }
 

@@ -10,7 +10,7 @@ use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
 use crate::lang::eval::scene::Scene;
 use crate::lang::values::plans::{MeshSpec, RuleSpec};
-use crate::lang::values::value::{BodyKind, Home, ModuleId, ShellValue, Value};
+use crate::lang::values::value::{BodyKind, EntityHome, ModuleId, ShellValue, Value};
 use crate::mesh::request::fault::MeshFault;
 use crate::mesh::request::plan::{GroupRequest, Place, Refine, Target};
 use crate::mesh::{Plan, Rule};
@@ -323,7 +323,7 @@ pub(super) fn edge_name(cx: &Cx, chain: &Chain, edge: &SharedEdge) -> String {
 }
 
 /// The curve along an edge.
-pub(super) fn chain_of(cx: &mut Cx, home: &Home, edge: &SharedEdge) -> Result<Chain, Halt> {
+pub(super) fn chain_of(cx: &mut Cx, home: &EntityHome, edge: &SharedEdge) -> Result<Chain, Halt> {
     let tolerance = cx.tolerance()?;
     let scene = Scene { model: cx.model(home)?, network: cx.network_of(home)? };
     let later = || ValueFault::NotInThisVersion { what: "a line across a trimmed surface as a curve".to_owned() };

@@ -1,7 +1,7 @@
 //! Faces whose borders do not quite meet.
 
 use glam::DVec3;
-use lofting::base::fault::{Fault, Plain};
+use lofting::base::fault::{Fault, PlainWords};
 use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
 use lofting::geometry::construct::build::{arc_through, circle, line};
@@ -87,7 +87,7 @@ fn a_gap_as_wide_as_stated_is_glued_and_a_wider_one_is_an_error() {
     for (gap, code) in [(0.01 + 1e-7, "E711"), (0.0299, "E711"), (0.0301, "E618")] {
         let fault = glued(&two_squares(gap), 0.01).err().unwrap();
         assert_eq!(fault.code().0, code, "{gap}: {fault:?}");
-        let help = fault.describe(&Plain).help.unwrap_or_default();
+        let help = fault.describe(&PlainWords).help.unwrap_or_default();
         assert!(code == "E711" || help.contains("`snap: 0.05`"), "{help}");
     }
     let fault = glued(&two_squares(0.02), 0.01).err().unwrap();

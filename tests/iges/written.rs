@@ -9,7 +9,7 @@ use lofting::geometry::closest;
 use lofting::geometry::construct::build;
 use lofting::geometry::{Curve, Ends, Spline};
 use lofting::io::iges::Part;
-use lofting::io::iges::write::{Scale, Shown, Thing, sheet, write};
+use lofting::io::iges::write::{IgesScale, IgesShape, IgesThing, sheet, write};
 use lofting::model::measure;
 use lofting::network::Chain;
 use lofting::surface::blended::plane_face;
@@ -25,15 +25,15 @@ fn tolerance() -> Tolerance {
     Tolerance::new(1e-7, 10.0)
 }
 
-fn text(things: &[Thing], unit: &'static str, model: f64) -> String {
-    let scale = Scale { unit, model, tolerance: tolerance() };
+fn text(things: &[IgesThing], unit: &'static str, model: f64) -> String {
+    let scale = IgesScale { unit, model, tolerance: tolerance() };
     let sheet = sheet(things, &scale).unwrap();
     let mut out = Vec::new();
     write(&sheet, "part", &scale, &mut out).unwrap();
     String::from_utf8(out).unwrap()
 }
 
-fn back(things: &[Thing], unit: &'static str, model: f64) -> Part {
+fn back(things: &[IgesThing], unit: &'static str, model: f64) -> Part {
     let text = text(things, unit, model);
     assert!(text.lines().all(|line| line.len() == 80), "80 columns:\n{text}");
     let part = read(text.as_bytes(), &OPTIONS).unwrap();
@@ -41,8 +41,8 @@ fn back(things: &[Thing], unit: &'static str, model: f64) -> Part {
     part
 }
 
-fn thing(name: &str, group: &str, shown: Shown) -> Thing {
-    Thing { name: name.to_owned(), group: group.to_owned(), layers: Vec::new(), color: None, shown }
+fn thing(name: &str, group: &str, shown: IgesShape) -> IgesThing {
+    IgesThing { name: name.to_owned(), group: group.to_owned(), layers: Vec::new(), color: None, shown }
 }
 
 fn curves() -> Vec<Curve> {
@@ -65,8 +65,8 @@ fn curves() -> Vec<Curve> {
 #[test]
 fn curves_come_back_where_they_were() {
     let curves = curves();
-    let things: Vec<Thing> =
-        curves.iter().enumerate().map(|(k, c)| thing(&format!("rib {k}"), "", Shown::Curve(Chain::of_curve(c)))).collect();
+    let things: Vec<IgesThing> =
+        curves.iter().enumerate().map(|(k, c)| thing(&format!("rib {k}"), "", IgesShape::Curve(Chain::of_curve(c)))).collect();
     for (unit, model) in [("mm", 1.0), ("m", 1000.0), ("in", 25.4)] {
         let part = back(&things, unit, model);
         assert_eq!(part.curves.len(), curves.len());
@@ -121,13 +121,13 @@ fn surfaces() -> Vec<(Surface, f64)> {
 #[test]
 fn surfaces_keep_their_area_names_and_groups() {
     let surfaces = surfaces();
-    let mut things: Vec<Thing> = surfaces
+    let mut things: Vec<IgesThing> = surfaces
         .iter()
         .enumerate()
-        .map(|(k, (s, _))| thing(&format!("skin{k}"), if k < 3 { "hall" } else { "" }, Shown::Surface(s.clone())))
+        .map(|(k, (s, _))| thing(&format!("skin{k}"), if k < 3 { "hall" } else { "" }, IgesShape::Surface(s.clone())))
         .collect();
-    things.extend(surfaces.iter().map(|(s, _)| thing("", "", Shown::Surface(s.flipped()))));
-    things.push(thing("A", "hall", Shown::Point(DVec3::new(1.0, 2.0, 3.0))));
+    things.extend(surfaces.iter().map(|(s, _)| thing("", "", IgesShape::Surface(s.flipped()))));
+    things.push(thing("A", "hall", IgesShape::Point(DVec3::new(1.0, 2.0, 3.0))));
     let part = back(&things, "m", 1000.0);
     assert_eq!(part.surfaces.len(), 2 * surfaces.len());
     for (k, found) in part.surfaces.iter().enumerate() {
@@ -152,7 +152,7 @@ fn a_plane_inside_a_loop_is_a_trimmed_surface() {
         (0..6).map(|k| f64::from(k) * PI / 3.0).map(|a| DVec3::new(2.0 * a.cos(), 2.0 * a.sin(), 1.0 + a.cos())).collect();
     let border = build::polyline(&corners, true, NONE).unwrap();
     let (face, _) = plane_face::bounded(&[chain(&border)], NONE, &tolerance()).unwrap();
-    let part = back(&[thing("deck", "", Shown::Surface(face))], "mm", 1.0);
+    let part = back(&[thing("deck", "", IgesShape::Surface(face))], "mm", 1.0);
     let found = &part.surfaces[0].value;
     let outer = found.outer.as_ref().unwrap();
     assert!(found.off.distance < 1e-13 && outer.iter().all(|b| b.uv.is_some()), "{}", found.off.distance);
@@ -214,7 +214,7 @@ fn trimmed_surfaces_come_back_with_their_borders() {
         let bytes = std::fs::read(super::folder(&format!("iges-{name}"))).unwrap();
         let part = read(&bytes, &OPTIONS).unwrap();
         let built: Vec<&Surface> = part.built.iter().flatten().collect();
-        let things: Vec<Thing> = built.iter().map(|s| thing("", "", Shown::Surface((*s).clone()))).collect();
+        let things: Vec<IgesThing> = built.iter().map(|s| thing("", "", IgesShape::Surface((*s).clone()))).collect();
         let again = read(text(&things, "mm", 1.0).as_bytes(), &OPTIONS).unwrap();
         assert_eq!(again.built.iter().flatten().count(), built.len(), "{name}: {:?}", again.warnings);
         for (a, b) in again.built.iter().flatten().zip(&built) {
@@ -231,7 +231,7 @@ fn a_plane_with_holes_keeps_them() {
     let ring = |radius: f64, x: f64| chain(&build::circle(DVec3::new(x, 0.0, 1.0), radius, DVec3::Z, NONE).unwrap());
     let ground = plane::unbounded(DVec3::Z, DVec3::Z, NONE).unwrap();
     let plate = surface::trim(&ground, &[ring(4.0, 0.0)], &[vec![ring(1.0, 2.0)], vec![ring(1.0, -2.0)]], NONE, &tolerance()).unwrap();
-    let part = back(&[thing("plate", "", Shown::Surface(plate))], "mm", 1.0);
+    let part = back(&[thing("plate", "", IgesShape::Surface(plate))], "mm", 1.0);
     assert_eq!(part.surfaces[0].value.holes.len(), 2);
     let found = measure::area(&part.built[0][0]);
     assert!((found / (14.0 * PI) - 1.0).abs() < 1e-9, "{found}");

@@ -8,7 +8,7 @@ use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
 use lofting::geometry::construct::build::nurbs;
 use lofting::network::{Chain, net};
-use lofting::surface::blended::coons::{Grid, Method, Settings, build};
+use lofting::surface::blended::coons::{BlendMethod, CoonsSettings, Grid, build};
 use lofting::surface::{Reparam, Surface};
 use serde_json::Value;
 
@@ -63,7 +63,7 @@ pub fn surface(families: [Vec<Chain>; 2], gap: f64) -> (Surface, f64) {
     let chains = [profiles, guides].concat();
     let (flow, nodes) = net::of_net(&chains, count, &near).unwrap();
     let poles = (flow.poles.0.map(|n| nodes[n]), flow.poles.1.map(|n| nodes[n]));
-    let settings = Settings { method: Method::Gordon, reparam: Reparam::Smooth, origin: Origin::NONE };
+    let settings = CoonsSettings { method: BlendMethod::Gordon, reparam: Reparam::Smooth, origin: Origin::NONE };
     (build(&Grid { chains: &chains, flow: &flow, poles }, &settings, &tolerance).unwrap().0, size)
 }
 

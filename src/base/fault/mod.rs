@@ -155,9 +155,9 @@ pub trait Say {
 }
 
 /// Says everything in bare numbers; what `Display` uses.
-pub struct Plain;
+pub struct PlainWords;
 
-impl Say for Plain {
+impl Say for PlainWords {
     fn name(&self, _: Origin) -> String {
         String::new()
     }
@@ -280,7 +280,7 @@ impl<T: Family> From<T> for Fault {
 
 impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.describe(&Plain).message)
+        f.write_str(&self.describe(&PlainWords).message)
     }
 }
 

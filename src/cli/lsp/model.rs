@@ -9,7 +9,7 @@ use std::time::Instant;
 use super::document::Document;
 use crate::base::job::Job;
 use crate::cli::interrupt;
-use crate::lang::assist::{Known, Shape};
+use crate::lang::assist::{Known, KnownType};
 use crate::lang::diag::diagnostic::{Diagnostic, Sources};
 use crate::lang::diag::span::Span;
 use crate::lang::eval::context::Cx;
@@ -156,7 +156,7 @@ fn described(cx: &mut Cx<'_>, wanted: &BTreeSet<String>) -> (Described, bool) {
     let all = symbols.len() <= DESCRIBED;
     let (mut out, mut shapes) = (BTreeMap::new(), Known::new());
     for symbol in symbols {
-        if let Some(name) = symbol.name.clone().filter(|_| symbol.shape != Shape::Unknown) {
+        if let Some(name) = symbol.name.clone().filter(|_| symbol.shape != KnownType::Unknown) {
             shapes.entry(name).or_insert(symbol.shape);
         }
         let Some(name) = symbol.name.filter(|name| all || wanted.contains(name)) else { continue };

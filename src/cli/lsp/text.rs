@@ -8,7 +8,7 @@ use super::answers::Others;
 use super::document::Document;
 use super::model::Facts;
 use crate::cli::repl::complete::files;
-use crate::lang::assist::{Script, Sort};
+use crate::lang::assist::{EditedScript, Sort};
 use crate::lang::diag::span::Span;
 use crate::lang::fmt::format;
 use crate::lang::syntax::ast::Keyword;
@@ -106,14 +106,14 @@ pub fn layout(document: &Document) -> Value {
 }
 
 /// A document as the engine that helps while typing reads it, handed to `work`.
-pub fn assisted<T>(document: &Document, facts: &Facts, others: &Others<'_>, work: impl FnOnce(&Script<'_>) -> T) -> T {
+pub fn assisted<T>(document: &Document, facts: &Facts, others: &Others<'_>, work: impl FnOnce(&EditedScript<'_>) -> T) -> T {
     let open = |from: &str, written: &str| {
         let path = Path::new(from).parent()?.join(written).canonicalize().ok()?;
         let module = others.find(&path)?;
         Some((path.to_string_lossy().into_owned(), module.text))
     };
     let path = document.path.as_deref().map_or(String::new(), |path| path.to_string_lossy().into_owned());
-    work(&Script { text: &document.text, path: &path, open: &open, known: &facts.shapes, session: false })
+    work(&EditedScript { text: &document.text, path: &path, open: &open, known: &facts.shapes, session: false })
 }
 
 /// The editor's number for what a candidate is.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use rustyline::completion::Pair;
 
 use crate::base::limits;
-use crate::lang::assist::{Function, Known, Script};
+use crate::lang::assist::{EditedScript, Function, Known};
 use crate::lang::syntax::keywords::written;
 use crate::session::disk::read_limited;
 use crate::session::notebook::{COMMANDS, Notebook};
@@ -42,10 +42,10 @@ impl Session {
     }
 
     /// The session with a line behind it, handed to `work` with the first byte of that line.
-    fn with<T>(&self, line: &str, work: impl FnOnce(&Script<'_>, usize) -> T) -> T {
+    fn with<T>(&self, line: &str, work: impl FnOnce(&EditedScript<'_>, usize) -> T) -> T {
         let text = format!("{}{line}", self.text);
         let path = self.folder().join("session.loft").to_string_lossy().into_owned();
-        work(&Script { text: &text, path: &path, open: &module, known: &self.known, session: true }, self.text.len())
+        work(&EditedScript { text: &text, path: &path, open: &module, known: &self.known, session: true }, self.text.len())
     }
 
     /// The call that a line ends in.

@@ -12,7 +12,7 @@ use crate::geometry::curves::curve::Shape;
 use crate::geometry::{Curve, Kind};
 use crate::io::cad::curve_on_surface::fitted;
 use crate::io::cad::defect::{Defect, defect};
-use crate::io::cad::degenerate_edges::Placed;
+use crate::io::cad::degenerate_edges::FileBorders;
 use crate::io::cad::elementary_surface::{self, Ground};
 use crate::model::body::BodyLoop;
 use crate::model::{Body, BodyEdge, BodyFace, Model, Shell, SurfaceId, measure};
@@ -76,7 +76,7 @@ impl Faces {
             return Err(defect("it is thinner than the gluing distance, so it has no face"));
         }
         let grounds = par::try_map(body.faces.len(), |k| self.ground(&body.faces[k], tolerance))?;
-        let placed = Placed::new(&body, &grounds, tolerance);
+        let placed = FileBorders::new(&body, &grounds, tolerance);
         let curves = self.curves(&body, &placed, tolerance)?;
         let is_open = |face: &BodyFace| face.loops.is_empty() || face.loops.iter().any(|around| !body.is_closed(around));
         if body.faces.iter().any(is_open) {
@@ -101,7 +101,7 @@ impl Faces {
     }
 
     /// The curves of the edges that some face uses.
-    fn curves(&self, body: &Body, placed: &Placed, tolerance: &Tolerance) -> Result<Vec<Option<Curve>>, Defect> {
+    fn curves(&self, body: &Body, placed: &FileBorders, tolerance: &Tolerance) -> Result<Vec<Option<Curve>>, Defect> {
         let mut used = vec![false; body.edges.len()];
         body.faces.iter().flat_map(|face| &face.loops).flatten().for_each(|(edge, _)| used[*edge] = true);
         let curve = |k: usize| placed.curve(k, body.edges[k].ends, self.curve(body, &body.edges[k], tolerance)?, tolerance);

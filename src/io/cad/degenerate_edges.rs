@@ -19,7 +19,7 @@ const PLACES: usize = 8;
 
 /// Vertices and borders as the file has them.
 #[derive(Debug)]
-pub struct Placed {
+pub struct FileBorders {
     /// Vertices of the body, at poles where those are.
     pub vertices: Vec<DVec3>,
     /// Whether each vertex is at a pole.
@@ -28,7 +28,7 @@ pub struct Placed {
     borders: Vec<Vec<Curve>>,
 }
 
-impl Placed {
+impl FileBorders {
     /// Where the faces of a body have poles that were made points.
     pub fn new(body: &Body, grounds: &[Ground], tolerance: &Tolerance) -> Self {
         let room = REACH * tolerance.point;

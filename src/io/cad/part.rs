@@ -14,7 +14,7 @@ use crate::surface::Surface;
 
 /// What a reader needs to know of the model.
 #[derive(Clone, Copy, Debug)]
-pub struct Options {
+pub struct ReadOptions {
     /// Millimetres in the model's unit.
     pub model: f64,
     /// Name of the model's unit, for messages.
@@ -51,15 +51,15 @@ const RESERVED: &[&str] = &[
 
 /// Names given so far, and how often each was wanted.
 #[derive(Clone, Debug)]
-pub struct Names(BTreeMap<String, usize>);
+pub struct UniqueNames(BTreeMap<String, usize>);
 
-impl Default for Names {
+impl Default for UniqueNames {
     fn default() -> Self {
         Self(RESERVED.iter().map(|n| ((*n).to_owned(), 1)).collect())
     }
 }
 
-impl Names {
+impl UniqueNames {
     /// The wanted name, with a number where it is taken.
     pub fn give(&mut self, wanted: &str) -> String {
         let mut name = wanted.to_owned();
@@ -74,7 +74,7 @@ impl Names {
 
 /// Something of the file under its name.
 #[derive(Clone, Debug)]
-pub struct Item<T> {
+pub struct Imported<T> {
     /// The file's name for it, or its kind and number (`curve3`); no two of a file are the same.
     pub name: String,
     /// The name as the file has it, where it has one.
@@ -149,11 +149,11 @@ pub struct Unusable {
 #[derive(Clone, Debug, Default)]
 pub struct Part {
     /// Points, one each, or rows of them.
-    pub points: Vec<Item<Vec<DVec3>>>,
+    pub points: Vec<Imported<Vec<DVec3>>>,
     /// Curves.
-    pub curves: Vec<Item<Curve>>,
+    pub curves: Vec<Imported<Curve>>,
     /// Surfaces, trimmed or whole.
-    pub surfaces: Vec<Item<Face>>,
+    pub surfaces: Vec<Imported<Face>>,
     /// What [`Part::build`] made of them: one each, several where a face has several outer loops; none where it could not.
     pub built: Vec<Vec<Surface>>,
     /// Groups, shells and solids.
@@ -188,7 +188,7 @@ pub struct Part {
 
 /// Where something of the file stands in the part.
 #[derive(Clone, Copy, Debug)]
-pub enum Place {
+pub enum PartPlace {
     /// In [`Part::points`].
     Point(usize),
     /// In [`Part::curves`].
@@ -206,19 +206,19 @@ impl Part {
 
 impl Group {
     /// Adds a member.
-    pub fn put(&mut self, member: Place) {
+    pub fn put(&mut self, member: PartPlace) {
         match member {
-            Place::Point(k) => self.points.push(k),
-            Place::Curve(k) => self.curves.push(k),
-            Place::Surface(k) => self.surfaces.push(k),
+            PartPlace::Point(k) => self.points.push(k),
+            PartPlace::Curve(k) => self.curves.push(k),
+            PartPlace::Surface(k) => self.surfaces.push(k),
         }
     }
 
     /// All members.
-    pub fn members(&self) -> Vec<Place> {
-        let points = self.points.iter().map(|k| Place::Point(*k));
-        let curves = self.curves.iter().map(|k| Place::Curve(*k));
-        points.chain(curves).chain(self.surfaces.iter().map(|k| Place::Surface(*k))).collect()
+    pub fn members(&self) -> Vec<PartPlace> {
+        let points = self.points.iter().map(|k| PartPlace::Point(*k));
+        let curves = self.curves.iter().map(|k| PartPlace::Curve(*k));
+        points.chain(curves).chain(self.surfaces.iter().map(|k| PartPlace::Surface(*k))).collect()
     }
 
     /// Whether nothing is in it.
@@ -246,7 +246,7 @@ impl Shades {
 
 impl Part {
     /// Lists the faces that are off by more than the slack of the file; gives the worst and how many others there are.
-    pub fn list_repairs(&mut self, slack: f64, name: impl Fn(&Item<Face>) -> String) -> Option<(Repair, usize)> {
+    pub fn list_repairs(&mut self, slack: f64, name: impl Fn(&Imported<Face>) -> String) -> Option<(Repair, usize)> {
         for (face, item) in self.surfaces.iter().enumerate().filter(|(_, item)| item.value.off.distance > slack) {
             let Off { distance, place, rule } = item.value.off;
             self.repairs.push(Repair { rule, face, entity: name(item), line: item.line, distance, place });

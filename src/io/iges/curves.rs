@@ -16,14 +16,14 @@ use crate::io::iges::entity_table::{EntityTable, NESTED};
 
 /// Whether a curve is wanted in space (model units) or in the (u, v) of a surface, and how deep it is nested.
 #[derive(Clone, Copy, Debug)]
-pub struct Place {
+pub struct CurveRequest {
     /// Numbers are taken as they are.
     pub in_uv: bool,
     /// Entities around it.
     pub depth: usize,
 }
 
-impl Place {
+impl CurveRequest {
     /// In space, not inside another curve.
     pub const SPACE: Self = Self { in_uv: false, depth: 0 };
     /// In (u, v), not inside another curve.
@@ -36,7 +36,7 @@ impl Place {
 
 impl EntityTable {
     /// The curve that a pointer means; made once.
-    pub fn curve(&mut self, d: Pointer, place: Place) -> Result<Curve, Defect> {
+    pub fn curve(&mut self, d: Pointer, place: CurveRequest) -> Result<Curve, Defect> {
         if let Some(made) = self.curves.get(&(d, place.in_uv)) {
             return made.clone();
         }
@@ -50,7 +50,7 @@ impl EntityTable {
         made
     }
 
-    fn make_curve(&mut self, d: Pointer, place: Place) -> Result<Curve, Defect> {
+    fn make_curve(&mut self, d: Pointer, place: CurveRequest) -> Result<Curve, Defect> {
         let k = self.place(d)?;
         let matrix = self.placement(self.entries[k].transform)?;
         // Taken out while it is worked on: a copy of a large spline would be memory for nothing.
@@ -69,7 +69,7 @@ impl EntityTable {
         Ok(curve)
     }
 
-    fn curve_of(&mut self, d: Pointer, data: &Data, place: Place) -> Result<Curve, Defect> {
+    fn curve_of(&mut self, d: Pointer, data: &Data, place: CurveRequest) -> Result<Curve, Defect> {
         let scale = if place.in_uv { 1.0 } else { self.scale };
         let same = if place.in_uv { 0.0 } else { self.tolerance.point };
         let origin = self.origin;
@@ -119,7 +119,7 @@ impl EntityTable {
     }
 
     /// Says by how much the given end is off the curve.
-    fn missed(&mut self, d: Pointer, missed: f64, place: Place) {
+    fn missed(&mut self, d: Pointer, missed: f64, place: CurveRequest) {
         if !place.in_uv && missed > self.slack() {
             let missed = self.length(missed);
             self.warn(d, format!("its given points are off the curve by {missed}"));
@@ -165,7 +165,7 @@ impl EntityTable {
     }
 
     /// Curves in a row; points among them say nothing, and a piece written backwards is turned.
-    fn composite(&mut self, d: Pointer, members: &[Pointer], place: Place) -> Result<Curve, Defect> {
+    fn composite(&mut self, d: Pointer, members: &[Pointer], place: CurveRequest) -> Result<Curve, Defect> {
         let mut pieces: Vec<Curve> = Vec::new();
         for member in members {
             if is_point(self.data(*member)?) {

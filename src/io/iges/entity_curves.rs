@@ -4,17 +4,17 @@ use glam::DVec3;
 
 use crate::io::cad::defect::{Defect, defect};
 use crate::io::iges::entity_data::{Data, SplineData};
-use crate::io::iges::params::Reader;
+use crate::io::iges::params::ParameterReader;
 
 /// 100.
-pub fn arc(r: &mut Reader) -> Result<Data, Defect> {
+pub fn arc(r: &mut ParameterReader) -> Result<Data, Defect> {
     let z = r.real("plane")?;
     let mut pair = |what: &str| Ok::<_, Defect>([r.real(what)?, r.real(what)?]);
     Ok(Data::Arc { z, center: pair("centre")?, start: pair("start")?, end: pair("end")? })
 }
 
 /// 104.
-pub fn conic(r: &mut Reader) -> Result<Data, Defect> {
+pub fn conic(r: &mut ParameterReader) -> Result<Data, Defect> {
     let mut conic = [0.0; 6];
     for c in &mut conic {
         *c = r.real("coefficient")?;
@@ -25,7 +25,7 @@ pub fn conic(r: &mut Reader) -> Result<Data, Defect> {
 }
 
 /// 106: pairs in a plane, triples, or triples with a vector each.
-pub fn points(form: i32, r: &mut Reader) -> Result<Data, Defect> {
+pub fn points(form: i32, r: &mut ParameterReader) -> Result<Data, Defect> {
     let kind = r.int("kind of rows")?;
     let n = r.count("count of points")?;
     let mut points = match kind {
@@ -63,7 +63,7 @@ pub fn points(form: i32, r: &mut Reader) -> Result<Data, Defect> {
 }
 
 /// 112: an end value of each coordinate and its derivatives follow the pieces; they say nothing new.
-pub fn polynomials(r: &mut Reader) -> Result<Data, Defect> {
+pub fn polynomials(r: &mut ParameterReader) -> Result<Data, Defect> {
     r.int("kind of spline")?;
     r.int("continuity")?;
     let dimensions = r.int("count of dimensions")?;
@@ -102,7 +102,7 @@ pub fn increasing(breaks: &[f64]) -> Result<(), Defect> {
 }
 
 /// 126.
-pub fn spline(r: &mut Reader) -> Result<Data, Defect> {
+pub fn spline(r: &mut ParameterReader) -> Result<Data, Defect> {
     let last = r.count("last index of points")?;
     let degree = r.count("degree")?;
     for what in ["planar", "closed", "polynomial", "periodic"] {
@@ -123,7 +123,7 @@ pub fn spline(r: &mut Reader) -> Result<Data, Defect> {
 }
 
 /// The stretch of parameters that counts; one left out or outside the knots is all of it.
-pub fn range(r: &mut Reader, (first, last): (f64, f64)) -> (f64, f64) {
+pub fn range(r: &mut ParameterReader, (first, last): (f64, f64)) -> (f64, f64) {
     let (a, b) = (r.real_or(first), r.real_or(last));
     if a < b && first < b && a < last { (a.max(first), b.min(last)) } else { (first, last) }
 }
@@ -141,7 +141,7 @@ pub fn check_degree(points: usize, degree: usize) -> Result<(), Defect> {
 }
 
 /// 130 with a constant distance.
-pub fn offset(r: &mut Reader) -> Result<Data, Defect> {
+pub fn offset(r: &mut ParameterReader) -> Result<Data, Defect> {
     let base = r.pointer("curve")?;
     let law = r.int("law of distances")?;
     r.pointer("law's curve")?;

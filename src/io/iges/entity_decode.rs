@@ -4,12 +4,12 @@ use glam::{DAffine3, DVec3};
 
 use crate::io::cad::defect::{Defect, defect};
 use crate::io::iges::entity_data::{Data, Decoded};
-use crate::io::iges::params::Reader;
+use crate::io::iges::params::ParameterReader;
 use crate::io::iges::records::Entry;
 use crate::io::iges::{entity_curves as curves, entity_faces as faces, entity_surfaces as surfaces};
 
 /// Reads the parameters of an entity; the reader stands behind the entity type.
-pub fn decode(entry: &Entry, reader: &mut Reader) -> Result<Decoded, Defect> {
+pub fn decode(entry: &Entry, reader: &mut ParameterReader) -> Result<Decoded, Defect> {
     let form = entry.form;
     let data = match entry.kind {
         100 => curves::arc(reader)?,
@@ -76,14 +76,14 @@ pub fn decode(entry: &Entry, reader: &mut Reader) -> Result<Decoded, Defect> {
     Ok(Decoded { data, properties })
 }
 
-fn levels(reader: &mut Reader) -> Result<Vec<i32>, Defect> {
+fn levels(reader: &mut ParameterReader) -> Result<Vec<i32>, Defect> {
     let n = reader.count("count of levels")?;
     reader.needs(n, 1, "levels")?;
     (0..n).map(|_| Ok(reader.int("level")? as i32)).collect()
 }
 
 /// Rows of a rotation, each followed by its part of the translation.
-fn matrix(reader: &mut Reader) -> Result<DAffine3, Defect> {
+fn matrix(reader: &mut ParameterReader) -> Result<DAffine3, Defect> {
     let m = reader.reals(12, "matrix elements")?;
     let row = |k: usize| DVec3::new(m[4 * k], m[4 * k + 1], m[4 * k + 2]);
     let rows = glam::DMat3::from_cols(row(0), row(1), row(2));

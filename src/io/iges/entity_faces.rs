@@ -2,10 +2,10 @@
 
 use crate::io::cad::defect::Defect;
 use crate::io::iges::entity_data::{BoundaryCurve, Data, EdgeData, LoopEdge};
-use crate::io::iges::params::Reader;
+use crate::io::iges::params::ParameterReader;
 
 /// 141.
-pub fn boundary(r: &mut Reader) -> Result<Data, Defect> {
+pub fn boundary(r: &mut ParameterReader) -> Result<Data, Defect> {
     r.int("kind of boundary")?;
     r.int("preference")?;
     let surface = r.pointer("surface")?;
@@ -22,7 +22,7 @@ pub fn boundary(r: &mut Reader) -> Result<Data, Defect> {
 }
 
 /// 142.
-pub fn curve_on_surface(r: &mut Reader) -> Result<Data, Defect> {
+pub fn curve_on_surface(r: &mut ParameterReader) -> Result<Data, Defect> {
     r.int("way of making")?;
     let (surface, uv, space) = (r.pointer("surface")?, r.pointer("curve in (u, v)")?, r.pointer("curve in space")?);
     if r.left() > 0 {
@@ -32,7 +32,7 @@ pub fn curve_on_surface(r: &mut Reader) -> Result<Data, Defect> {
 }
 
 /// 143.
-pub fn bounded(r: &mut Reader) -> Result<Data, Defect> {
+pub fn bounded(r: &mut ParameterReader) -> Result<Data, Defect> {
     r.int("kind of boundaries")?;
     let surface = r.pointer("surface")?;
     let n = r.count("count of boundaries")?;
@@ -40,7 +40,7 @@ pub fn bounded(r: &mut Reader) -> Result<Data, Defect> {
 }
 
 /// 144.
-pub fn trimmed(r: &mut Reader) -> Result<Data, Defect> {
+pub fn trimmed(r: &mut ParameterReader) -> Result<Data, Defect> {
     let surface = r.pointer("surface")?;
     let given = r.int("kind of outer border")? != 0;
     let n = r.count("count of inner borders")?;
@@ -50,7 +50,7 @@ pub fn trimmed(r: &mut Reader) -> Result<Data, Defect> {
 }
 
 /// 186: the outer shell, then the voids, each with its sense.
-pub fn solid(r: &mut Reader) -> Result<Data, Defect> {
+pub fn solid(r: &mut ParameterReader) -> Result<Data, Defect> {
     let mut shells = vec![r.pointer("shell")?];
     r.int("orientation")?;
     let n = if r.left() > 0 { r.count("count of voids")? } else { 0 };
@@ -63,13 +63,13 @@ pub fn solid(r: &mut Reader) -> Result<Data, Defect> {
 }
 
 /// 502.
-pub fn vertices(r: &mut Reader) -> Result<Data, Defect> {
+pub fn vertices(r: &mut ParameterReader) -> Result<Data, Defect> {
     let n = r.count("count of vertices")?;
     Ok(Data::Vertices(r.points(n, "vertices")?))
 }
 
 /// 504.
-pub fn edges(r: &mut Reader) -> Result<Data, Defect> {
+pub fn edges(r: &mut ParameterReader) -> Result<Data, Defect> {
     let n = r.count("count of edges")?;
     r.needs(n, 5, "edges")?;
     let mut edge = || {
@@ -83,7 +83,7 @@ pub fn edges(r: &mut Reader) -> Result<Data, Defect> {
 }
 
 /// 508.
-pub fn loop_of(r: &mut Reader) -> Result<Data, Defect> {
+pub fn loop_of(r: &mut ParameterReader) -> Result<Data, Defect> {
     let n = r.count("count of edges")?;
     r.needs(n, 5, "edges")?;
     let mut edge = || {
@@ -103,7 +103,7 @@ pub fn loop_of(r: &mut Reader) -> Result<Data, Defect> {
 }
 
 /// 510.
-pub fn face(r: &mut Reader) -> Result<Data, Defect> {
+pub fn face(r: &mut ParameterReader) -> Result<Data, Defect> {
     let surface = r.pointer("surface")?;
     let n = r.count("count of loops")?;
     let has_outer = r.int("outer loop")? != 0;
@@ -111,7 +111,7 @@ pub fn face(r: &mut Reader) -> Result<Data, Defect> {
 }
 
 /// 514.
-pub fn shell(r: &mut Reader) -> Result<Data, Defect> {
+pub fn shell(r: &mut ParameterReader) -> Result<Data, Defect> {
     let n = r.count("count of faces")?;
     r.needs(n, 2, "faces")?;
     let mut face = || Ok((r.pointer("face")?, r.int("orientation")? != 0));

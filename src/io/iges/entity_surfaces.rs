@@ -3,10 +3,10 @@
 use crate::io::cad::defect::{Defect, defect};
 use crate::io::iges::entity_curves::{check_degree, increasing, range};
 use crate::io::iges::entity_data::{Data, NetData};
-use crate::io::iges::params::Reader;
+use crate::io::iges::params::ParameterReader;
 
 /// 108.
-pub fn plane(r: &mut Reader) -> Result<Data, Defect> {
+pub fn plane(r: &mut ParameterReader) -> Result<Data, Defect> {
     let c = r.reals(4, "coefficients")?;
     let border = if r.left() > 0 { r.pointer("border")? } else { 0 };
     // Place and size of a symbol.
@@ -17,7 +17,7 @@ pub fn plane(r: &mut Reader) -> Result<Data, Defect> {
 }
 
 /// 114: after each row of patches, and after the last one, the standard has patches without meaning; some files leave them out.
-pub fn patches(r: &mut Reader) -> Result<Data, Defect> {
+pub fn patches(r: &mut ParameterReader) -> Result<Data, Defect> {
     const EACH: usize = 48;
     r.int("kind of spline")?;
     r.int("kind of patches")?;
@@ -39,7 +39,7 @@ pub fn patches(r: &mut Reader) -> Result<Data, Defect> {
 }
 
 /// 118.
-pub fn ruled(form: i32, r: &mut Reader) -> Result<Data, Defect> {
+pub fn ruled(form: i32, r: &mut ParameterReader) -> Result<Data, Defect> {
     let rails = [r.pointer("first curve")?, r.pointer("second curve")?];
     let crossed = r.int("direction")? == 1;
     if r.left() > 0 {
@@ -49,13 +49,13 @@ pub fn ruled(form: i32, r: &mut Reader) -> Result<Data, Defect> {
 }
 
 /// 120.
-pub fn revolution(r: &mut Reader) -> Result<Data, Defect> {
+pub fn revolution(r: &mut ParameterReader) -> Result<Data, Defect> {
     let (axis, profile) = (r.pointer("axis")?, r.pointer("profile")?);
     Ok(Data::Revolution { axis, profile, start: r.real("first angle")?, end: r.real("last angle")? })
 }
 
 /// 128.
-pub fn net(r: &mut Reader) -> Result<Data, Defect> {
+pub fn net(r: &mut ParameterReader) -> Result<Data, Defect> {
     let last = (r.count("last index in u")?, r.count("last index in v")?);
     let degree = (r.count("degree in u")?, r.count("degree in v")?);
     for what in ["closed in u", "closed in v", "polynomial", "periodic in u", "periodic in v"] {
@@ -75,20 +75,20 @@ pub fn net(r: &mut Reader) -> Result<Data, Defect> {
 }
 
 /// 140.
-pub fn offset(r: &mut Reader) -> Result<Data, Defect> {
+pub fn offset(r: &mut ParameterReader) -> Result<Data, Defect> {
     let indicator = r.point("side")?;
     Ok(Data::OffsetSurface { indicator, distance: r.real("distance")?, base: r.pointer("surface")? })
 }
 
 /// 190; form 1 says where parameters start.
-pub fn plane_surface(form: i32, r: &mut Reader) -> Result<Data, Defect> {
+pub fn plane_surface(form: i32, r: &mut ParameterReader) -> Result<Data, Defect> {
     let (at, normal) = (r.pointer("point")?, r.pointer("normal")?);
     let reference = if form == 1 { r.pointer("reference direction")? } else { 0 };
     Ok(Data::PlaneSurface { at, normal, reference })
 }
 
 /// 192 cylinder, 194 cone, 196 sphere, 198 torus; form 1 says where parameters start.
-pub fn round(kind: u32, form: i32, r: &mut Reader) -> Result<Data, Defect> {
+pub fn round(kind: u32, form: i32, r: &mut ParameterReader) -> Result<Data, Defect> {
     let at = r.pointer("point")?;
     let (axis, sizes) = match kind {
         192 => (r.pointer("axis")?, [r.real("radius")?, 0.0]),

@@ -8,11 +8,11 @@ use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::Curve;
 use crate::io::cad::defect::{Defect, defect};
-use crate::io::cad::part::Options;
+use crate::io::cad::part::ReadOptions;
 use crate::io::files::fault::Malformed;
 use crate::io::iges::entity_data::{Data, Decoded, Pointer};
 use crate::io::iges::entity_decode::decode;
-use crate::io::iges::params::Reader;
+use crate::io::iges::params::ParameterReader;
 use crate::io::iges::records::{Entry, Records};
 
 /// Matrices, composites, groups inside each other.
@@ -54,7 +54,7 @@ pub struct EntityTable {
 
 impl EntityTable {
     /// Reads the parameters of all entities; `bytes` is the size of the file.
-    pub fn new(records: Records, bytes: usize, options: &Options) -> Self {
+    pub fn new(records: Records, bytes: usize, options: &ReadOptions) -> Self {
         let scale = options.file.unwrap_or(records.global.millimetres) / options.model;
         let mut table = Self {
             entries: Vec::new(),
@@ -186,7 +186,7 @@ fn named(entry: &Entry) -> String {
 type Noted = (Decoded, Option<String>);
 
 fn read_one(entry: &Entry, text: &[u8], list: &crate::io::iges::params::Tokens) -> Result<Noted, Defect> {
-    let mut reader = Reader::new(text, list);
+    let mut reader = ParameterReader::new(text, list);
     if list.tokens.is_empty() {
         return Err(defect("it has no parameters"));
     }

@@ -54,13 +54,13 @@ impl Role {
 
 /// Values of one entity, parted by commas.
 #[derive(Clone, Debug, Default)]
-pub struct Values {
+pub struct EntityValues {
     texts: Vec<String>,
     /// Largest coordinate among them.
     largest: f64,
 }
 
-impl Values {
+impl EntityValues {
     /// No values yet.
     pub fn new() -> Self {
         Self::default()
@@ -129,7 +129,7 @@ struct Entity {
     color: i64,
     /// Number of its level, or below 0 a pointer to a list of such.
     level: i64,
-    values: Values,
+    values: EntityValues,
     properties: Vec<u32>,
 }
 
@@ -144,7 +144,7 @@ fn is_written(name: &str) -> bool {
 
 /// A file in the making.
 #[derive(Clone, Debug, Default)]
-pub struct Sheet {
+pub struct IgesFile {
     entities: Vec<Entity>,
     /// Names in the file with those in the model.
     names: BTreeMap<String, String>,
@@ -160,14 +160,14 @@ pub struct Sheet {
     pub left_out: Vec<String>,
 }
 
-impl Sheet {
+impl IgesFile {
     /// Adds a line for people, of plain characters, at most 72 of them.
     pub fn remark(&mut self, line: String) {
         self.remarks.push(line);
     }
 
     /// Adds an entity; gives the pointer to it.
-    pub fn add(&mut self, kind: u32, form: i32, role: Role, values: Values) -> u32 {
+    pub fn add(&mut self, kind: u32, form: i32, role: Role, values: EntityValues) -> u32 {
         self.entities.push(Entity { kind, form, role, transform: 0, color: 0, level: 0, values, properties: Vec::new() });
         self.entities.len() as u32 * 2 - 1
     }
@@ -191,7 +191,7 @@ impl Sheet {
     /// Gives an entity a name.
     pub fn name(&mut self, d: u32, name: &str) {
         let given = self.given(name);
-        let property = self.add(406, 15, Role::Definition, Values::new().int(1).text(&given));
+        let property = self.add(406, 15, Role::Definition, EntityValues::new().int(1).text(&given));
         if let Some(entity) = self.at(d) {
             entity.properties.push(property);
         }
@@ -214,7 +214,7 @@ impl Sheet {
     pub fn paint(&mut self, d: u32, rgb: [f64; 3]) {
         let known = self.colors.iter().find(|known| known.0 == rgb).map(|known| known.1);
         let color = known.unwrap_or_else(|| {
-            let color = self.add(314, 0, Role::Definition, Values::new().reals(rgb.map(|share| 100.0 * share)));
+            let color = self.add(314, 0, Role::Definition, EntityValues::new().reals(rgb.map(|share| 100.0 * share)));
             self.colors.push((rgb, color));
             color
         });
@@ -238,7 +238,7 @@ impl Sheet {
         let free = (1..).filter(|n| !taken.contains(n));
         for (name, level) in words.into_iter().zip(free) {
             let given = self.given(name);
-            let property = self.add(406, 3, Role::Definition, Values::new().int(2).int(0).text(&given));
+            let property = self.add(406, 3, Role::Definition, EntityValues::new().int(2).int(0).text(&given));
             self.levels.insert(name.to_owned(), level);
             if let Some(entity) = self.at(property) {
                 entity.level = i64::from(level);
@@ -257,7 +257,8 @@ impl Sheet {
             _ => {
                 let known = self.lists.get(&levels).copied();
                 let list = known.unwrap_or_else(|| {
-                    let list = self.add(406, 1, Role::Definition, Values::new().int(levels.len() as u32).ints(levels.iter().copied()));
+                    let list =
+                        self.add(406, 1, Role::Definition, EntityValues::new().int(levels.len() as u32).ints(levels.iter().copied()));
                     self.lists.insert(levels, list);
                     list
                 });

@@ -15,7 +15,7 @@ use crate::io::cad::face::{Face, Known};
 use crate::io::cad::face_loops::FaceLoops;
 use crate::io::cad::inside_point::inside;
 use crate::io::cad::revolution_profile::Clear;
-use crate::io::iges::curves::Place;
+use crate::io::iges::curves::CurveRequest;
 use crate::io::iges::entity_data::{Data, EdgeData, LoopEdge, Pointer};
 use crate::io::iges::entity_table::EntityTable;
 use crate::surface::Surface;
@@ -136,10 +136,10 @@ impl EntityTable {
 
     /// A curve in space with its curves in (u, v), piece by piece; where the first is missing or damaged the others make it.
     fn paired(&mut self, face: Pointer, space: Pointer, uv: &[Pointer], base: &Base) -> Result<CurveRun, Defect> {
-        let in_uv: Result<Vec<Curve>, Defect> = uv.iter().map(|d| self.curve(*d, Place::UV)).collect();
+        let in_uv: Result<Vec<Curve>, Defect> = uv.iter().map(|d| self.curve(*d, CurveRequest::UV)).collect();
         let in_uv = in_uv.map(|curves| curves.iter().flat_map(pieces).collect::<Vec<Curve>>());
         let outline = in_uv.as_ref().ok().filter(|curves| !curves.is_empty()).cloned();
-        let in_space = if space == 0 { Err(defect("it has no curve in space")) } else { self.curve(space, Place::SPACE) };
+        let in_space = if space == 0 { Err(defect("it has no curve in space")) } else { self.curve(space, CurveRequest::SPACE) };
         match (in_space, in_uv) {
             (Ok(curve), in_uv) => {
                 let pieces = pieces(&curve);

@@ -2,7 +2,7 @@
 
 use crate::io::files::fault::Malformed;
 use crate::io::iges::lines::{CONTENT, Line, Sections};
-use crate::io::iges::params::{Separators, Token, real, shown, tokens};
+use crate::io::iges::params::{ParameterSpan, Separators, real, shown, tokens};
 
 /// What the global section says that matters here.
 #[derive(Clone, Debug, PartialEq)]
@@ -127,22 +127,22 @@ fn blank_separators(text: &mut [u8], separators: Separators) {
     }
 }
 
-fn value(text: &[u8], tokens: &[Token], k: usize) -> String {
+fn value(text: &[u8], tokens: &[ParameterSpan], k: usize) -> String {
     match tokens.get(k) {
-        Some(Token::Bare(from, to) | Token::Text(from, to)) => shown(&text[*from..*to]),
+        Some(ParameterSpan::Bare(from, to) | ParameterSpan::Text(from, to)) => shown(&text[*from..*to]),
         _ => String::new(),
     }
 }
 
-fn number(text: &[u8], tokens: &[Token], k: usize) -> Option<f64> {
+fn number(text: &[u8], tokens: &[ParameterSpan], k: usize) -> Option<f64> {
     match tokens.get(k) {
-        Some(Token::Bare(from, to)) => real(&text[*from..*to]),
+        Some(ParameterSpan::Bare(from, to)) => real(&text[*from..*to]),
         _ => None,
     }
 }
 
 /// Index of the unit and its millimetres: by flag, else by name, else the inch.
-fn unit(text: &[u8], tokens: &[Token], warn: &mut impl FnMut(String)) -> (usize, f64) {
+fn unit(text: &[u8], tokens: &[ParameterSpan], warn: &mut impl FnMut(String)) -> (usize, f64) {
     let flag = number(text, tokens, 13);
     let name = value(text, tokens, 14).to_ascii_uppercase();
     let by_name = UNITS.iter().position(|u| u.1.contains(&name.as_str()));

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::io::cad::part::{Group, Place};
+use crate::io::cad::part::{Group, PartPlace};
 use crate::io::iges::entity_data::{Data, Pointer};
 use crate::io::iges::entity_table::EntityTable;
 
@@ -12,7 +12,7 @@ pub struct Levels(BTreeMap<i32, Group>);
 
 impl Levels {
     /// Puts things on the levels that an entity has.
-    pub fn put(&mut self, table: &EntityTable, d: Pointer, things: &[Place]) {
+    pub fn put(&mut self, table: &EntityTable, d: Pointer, things: &[PartPlace]) {
         let Some(entry) = table.entry(d) else { return };
         let listed;
         let levels = match entry.level {

@@ -27,6 +27,6 @@ mod records;
 mod surfaces;
 pub mod write;
 
-pub use crate::io::cad::part::{Group, Item, Options, Part};
-pub use crate::io::iges::entity_writer::Sheet;
-pub use crate::io::iges::open::{Opened, open};
+pub use crate::io::cad::part::{Group, Imported, Part, ReadOptions};
+pub use crate::io::iges::entity_writer::IgesFile;
+pub use crate::io::iges::open::{OpenedIges, open};

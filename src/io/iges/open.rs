@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use crate::base::bbox::Box3;
 use crate::base::job;
-use crate::io::cad::part::Options;
+use crate::io::cad::part::ReadOptions;
 use crate::io::files::fault::Malformed;
 use crate::io::iges::entity_data::{Data, Pointer};
 use crate::io::iges::entity_table::EntityTable;
@@ -14,12 +14,12 @@ use crate::io::iges::records;
 
 /// A file read as far as its numbers: entities with pointers, no geometry yet.
 #[derive(Debug)]
-pub struct Opened {
+pub struct OpenedIges {
     pub(super) table: EntityTable,
 }
 
 /// Reads a file, or says where it stops being one.
-pub fn open(bytes: &[u8], options: &Options) -> Result<Opened, Malformed> {
+pub fn open(bytes: &[u8], options: &ReadOptions) -> Result<OpenedIges, Malformed> {
     let records = records::read(bytes)?;
     let last = records.entries.last().map_or(1, |e| e.line);
     let table = EntityTable::new(records, bytes.len(), options);
@@ -28,10 +28,10 @@ pub fn open(bytes: &[u8], options: &Options) -> Result<Opened, Malformed> {
         let why = table.warnings.last().map_or(String::new(), |w| format!(": {}", w.what));
         return Err(Malformed::line(last, format!("the file holds no entity that can be read{why}")));
     }
-    Ok(Opened { table })
+    Ok(OpenedIges { table })
 }
 
-impl Opened {
+impl OpenedIges {
     /// How many entities of each type the file has.
     pub fn counts(&self) -> BTreeMap<u32, usize> {
         let mut counts = BTreeMap::new();

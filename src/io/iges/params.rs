@@ -4,7 +4,7 @@ use crate::io::cad::defect::{Defect, defect};
 
 /// Where the values of a list of parameters stand in its text.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Token {
+pub enum ParameterSpan {
     /// Nothing between two separators: the default is meant.
     Empty,
     /// A number or a bare word.
@@ -32,7 +32,7 @@ impl Default for Separators {
 #[derive(Debug, Default)]
 pub struct Tokens {
     /// In order.
-    pub tokens: Vec<Token>,
+    pub tokens: Vec<ParameterSpan>,
     /// The separator of records was reached.
     pub ended: bool,
     /// Counted texts whose count was wrong: index of the value.
@@ -55,17 +55,17 @@ pub fn tokens(text: &[u8], separators: Separators) -> Tokens {
                 if wrong {
                     found.miscounted.push(found.tokens.len());
                 }
-                (Token::Text(from, to), next)
+                (ParameterSpan::Text(from, to), next)
             }
             None => {
                 let end = text[at.min(text.len())..].iter().position(|c| is_end(*c)).map_or(text.len(), |n| at + n);
                 let to = at + text[at.min(end)..end].trim_ascii_end().len();
-                (if to == at { Token::Empty } else { Token::Bare(at, to) }, end)
+                (if to == at { ParameterSpan::Empty } else { ParameterSpan::Bare(at, to) }, end)
             }
         };
         let separator = text.get(at).copied();
         // Blanks after the last separator of a list that just stops are no value.
-        if separator.is_some() || token != Token::Empty {
+        if separator.is_some() || token != ParameterSpan::Empty {
             found.tokens.push(token);
         }
         match separator {
@@ -113,14 +113,14 @@ fn settled(text: &[u8], from: usize, to: usize, separators: Separators) -> (usiz
 
 /// Reads the values of one entity in order.
 #[derive(Debug)]
-pub struct Reader<'a> {
+pub struct ParameterReader<'a> {
     text: &'a [u8],
-    tokens: &'a [Token],
+    tokens: &'a [ParameterSpan],
     at: usize,
     ended: bool,
 }
 
-impl<'a> Reader<'a> {
+impl<'a> ParameterReader<'a> {
     /// Over the values of a list; of one that was ended properly values may be left out at the end.
     pub fn new(text: &'a [u8], list: &'a Tokens) -> Self {
         Self { text, tokens: &list.tokens, at: 0, ended: list.ended }
@@ -131,8 +131,8 @@ impl<'a> Reader<'a> {
         self.tokens.len() - self.at
     }
 
-    fn next(&mut self) -> Token {
-        let token = self.tokens.get(self.at).copied().unwrap_or(Token::Empty);
+    fn next(&mut self) -> ParameterSpan {
+        let token = self.tokens.get(self.at).copied().unwrap_or(ParameterSpan::Empty);
         self.at = (self.at + 1).min(self.tokens.len());
         token
     }
@@ -147,19 +147,19 @@ impl<'a> Reader<'a> {
             return Err(defect(format!("the values stop before the {what} (value {value})")));
         }
         match self.next() {
-            Token::Empty => Ok(0.0),
-            Token::Bare(from, to) => match real(&self.text[from..to]) {
+            ParameterSpan::Empty => Ok(0.0),
+            ParameterSpan::Bare(from, to) => match real(&self.text[from..to]) {
                 Some(x) => Ok(x),
                 None => Err(defect(format!("`{}` is not a number ({what}, value {value})", shown(&self.text[from..to])))),
             },
-            Token::Text(..) => Err(defect(format!("a text is given where the {what} is expected (value {value})"))),
+            ParameterSpan::Text(..) => Err(defect(format!("a text is given where the {what} is expected (value {value})"))),
         }
     }
 
     /// A real number that may be missing at the end of the list.
     pub fn real_or(&mut self, default: f64) -> f64 {
         match self.next() {
-            Token::Bare(from, to) => real(&self.text[from..to]).unwrap_or(default),
+            ParameterSpan::Bare(from, to) => real(&self.text[from..to]).unwrap_or(default),
             _ => default,
         }
     }
@@ -220,8 +220,8 @@ impl<'a> Reader<'a> {
     /// A text, counted or bare.
     pub fn text(&mut self) -> String {
         match self.next() {
-            Token::Text(from, to) | Token::Bare(from, to) => shown(&self.text[from..to]),
-            Token::Empty => String::new(),
+            ParameterSpan::Text(from, to) | ParameterSpan::Bare(from, to) => shown(&self.text[from..to]),
+            ParameterSpan::Empty => String::new(),
         }
     }
 

@@ -13,13 +13,13 @@ use crate::io::cad::base_surface::Base;
 use crate::io::cad::defect::Defect;
 use crate::io::cad::face::Face;
 use crate::io::cad::face_loops::FaceLoops;
-use crate::io::cad::part::{Group, Item, Names, Part, Place as ItemPlace, Shades, Unusable};
+use crate::io::cad::part::{Group, Imported, Part, PartPlace as ItemPlace, Shades, UniqueNames, Unusable};
 use crate::io::files::fault::Malformed;
-use crate::io::iges::curves::Place;
+use crate::io::iges::curves::CurveRequest;
 use crate::io::iges::entity_data::{Data, Pointer};
 use crate::io::iges::entity_table::{EntityTable, NESTED};
 use crate::io::iges::levels::Levels;
-use crate::io::iges::open::Opened;
+use crate::io::iges::open::OpenedIges;
 
 /// Kinds of entities that hold faces.
 const FACES: &[u32] = &[186, 510, 514];
@@ -41,16 +41,16 @@ const COLORS: [([f64; 3], &str); 8] = [
     ([1.0, 1.0, 1.0], "white"),
 ];
 
-impl Opened {
+impl OpenedIges {
     /// Makes curves and surfaces of the entities.
     pub fn part(mut self, tolerance: Tolerance) -> Part {
         self.table.tolerance = tolerance;
         let part = Part { unit: self.table.unit, model_unit: self.table.model_unit, mark: "D", ..Part::default() };
-        PartBuilder {
+        IgesPartBuilder {
             table: self.table,
             part,
             made: BTreeMap::new(),
-            names: Names::default(),
+            names: UniqueNames::default(),
             shades: Shades::default(),
             levels: Levels::default(),
         }
@@ -58,16 +58,16 @@ impl Opened {
     }
 }
 
-struct PartBuilder {
+struct IgesPartBuilder {
     table: EntityTable,
     part: Part,
     made: BTreeMap<Pointer, ItemPlace>,
-    names: Names,
+    names: UniqueNames,
     shades: Shades,
     levels: Levels,
 }
 
-impl PartBuilder {
+impl IgesPartBuilder {
     fn run(mut self) -> Part {
         let (parts, members) = self.relations();
         let mut groups = Vec::new();
@@ -147,7 +147,7 @@ impl PartBuilder {
     }
 
     fn curve(&mut self, d: Pointer) {
-        match self.table.curve(d, Place::SPACE) {
+        match self.table.curve(d, CurveRequest::SPACE) {
             Ok(curve) if curve.length() <= self.table.tolerance.point => self.skipped(d, "it is shorter than the tolerance"),
             Ok(curve) => {
                 self.made.insert(d, ItemPlace::Curve(self.part.curves.len()));
@@ -184,7 +184,7 @@ impl PartBuilder {
         self.table.warn(d, format!("skipped: {why}"));
     }
 
-    fn item<T>(&mut self, d: Pointer, word: &str, before: usize, value: T) -> Item<T> {
+    fn item<T>(&mut self, d: Pointer, word: &str, before: usize, value: T) -> Imported<T> {
         let (name, own) = self.name(d, word, before);
         let color = self.color(d);
         if let Some(made) = self.made.get(&d).copied() {
@@ -193,7 +193,7 @@ impl PartBuilder {
         if let (Some((rgb, color_name)), Some(made)) = (&color, self.made.get(&d).copied()) {
             self.shades.group(&mut self.part.colors, *rgb, color_name).put(made);
         }
-        Item { name, own, color: color.map(|c| c.0), id: u64::from(d), line: self.table.line(d), value }
+        Imported { name, own, color: color.map(|c| c.0), id: u64::from(d), line: self.table.line(d), value }
     }
 
     /// The name property, else the label, else a word and a number; with another number where it is taken. Behind it what the file has.

@@ -12,7 +12,7 @@ use crate::io::cad::control_nets::trimmed_net;
 use crate::io::cad::curves::check_weights;
 use crate::io::cad::defect::{Defect, defect};
 use crate::io::cad::face;
-use crate::io::iges::curves::{Place, bernstein};
+use crate::io::iges::curves::{CurveRequest, bernstein};
 use crate::io::iges::entity_data::{Data, NetData, Pointer};
 use crate::io::iges::entity_table::{EntityTable, NESTED};
 use crate::surface::NurbsSurface;
@@ -52,12 +52,12 @@ impl EntityTable {
                 Ok(Base::Plane(unit * (far / size * scale), first, unit.cross(first)))
             }
             Data::Ruled { rails, crossed, by_length } => {
-                let [a, b] = [self.curve(rails[0], Place::SPACE)?, self.curve(rails[1], Place::SPACE)?];
+                let [a, b] = [self.curve(rails[0], CurveRequest::SPACE)?, self.curve(rails[1], CurveRequest::SPACE)?];
                 let b = if *crossed { b.reversed() } else { b };
                 Ok(Base::Ruled { rails: [a, b], by_length: *by_length })
             }
             Data::Revolution { axis, profile, start, end } => {
-                let line = self.curve(*axis, Place::SPACE)?;
+                let line = self.curve(*axis, CurveRequest::SPACE)?;
                 let (about, to) = (line.start(), line.end());
                 let direction = math::unit(to - about, 0.0).ok_or_else(|| defect("its axis has no length"))?;
                 let first = match self.data(*profile)? {
@@ -67,11 +67,11 @@ impl EntityTable {
                     }
                     _ => None,
                 };
-                let profile = self.curve(*profile, Place::SPACE)?;
+                let profile = self.curve(*profile, CurveRequest::SPACE)?;
                 Ok(Base::Turned { axis: Axis { about, direction }, profile, angles: angles(*start, *end)?, first })
             }
             Data::Tabulated { profile, end } => {
-                let profile = self.curve(*profile, Place::SPACE)?;
+                let profile = self.curve(*profile, CurveRequest::SPACE)?;
                 let by = *end * scale - profile.start();
                 if by.length() <= self.tolerance.rounding {
                     return Err(defect("it has no curve to sweep"));

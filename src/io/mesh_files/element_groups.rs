@@ -9,7 +9,7 @@ use crate::io::mesh_files::sets::own_names;
 use crate::mesh::Mesh;
 
 /// Runs of elements that lie in the same range and the same sets: what a file calls an entity or a section.
-pub struct Part {
+pub struct ElementGroup {
     /// Kind of its elements.
     pub kind: Kind,
     /// Index of the range in `mesh.faces`, or `None` for elements outside all of them.
@@ -21,7 +21,7 @@ pub struct Part {
 }
 
 /// Parts of one kind, in the order of their first elements.
-pub fn parts(mesh: &Mesh, kind: Kind) -> Vec<Part> {
+pub fn parts(mesh: &Mesh, kind: Kind) -> Vec<ElementGroup> {
     let n = kind.count(mesh);
     if n == 0 {
         return Vec::new();
@@ -67,11 +67,11 @@ pub fn parts(mesh: &Mesh, kind: Kind) -> Vec<Part> {
         job::poll();
         members[*class as usize].push(element as u32);
     }
-    let mut parts: Vec<Part> = classes
+    let mut parts: Vec<ElementGroup> = classes
         .into_iter()
         .zip(members)
         .filter(|(_, elements)| !elements.is_empty())
-        .map(|((face, sets), elements)| Part { kind, face: (face != u32::MAX).then_some(face as usize), sets, elements })
+        .map(|((face, sets), elements)| ElementGroup { kind, face: (face != u32::MAX).then_some(face as usize), sets, elements })
         .collect();
     parts.sort_by_key(|part| part.elements[0]);
     parts

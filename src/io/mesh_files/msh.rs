@@ -13,7 +13,7 @@ use crate::io::files::block_writer::write_records;
 use crate::io::files::loss::Loss;
 use crate::io::files::names::Naming;
 use crate::io::mesh_files::deck::{Deck, Encoding};
-use crate::io::mesh_files::element_groups::{Part, parts};
+use crate::io::mesh_files::element_groups::{ElementGroup, parts};
 use crate::io::mesh_files::elements::{KINDS, Kind};
 use crate::io::mesh_files::format::Format;
 use crate::io::mesh_files::sets::{Set, sets};
@@ -68,7 +68,7 @@ fn entities(mesh: &Mesh) -> Vec<GeometryEntity> {
         let tag = entities.iter().filter(|e| e.dimension == 1).count() as i32 + 1;
         entities.push(GeometryEntity { dimension: 1, tag, sets: part.sets, parts: vec![(Some(Kind::Line), part.elements)], nodes: vec![] });
     }
-    let mut surfaces: Vec<Part> = parts(mesh, Kind::Triangle);
+    let mut surfaces: Vec<ElementGroup> = parts(mesh, Kind::Triangle);
     surfaces.extend(parts(mesh, Kind::Quad));
     let mut places: BTreeMap<(Option<usize>, Vec<usize>), usize> = BTreeMap::new();
     for part in surfaces {

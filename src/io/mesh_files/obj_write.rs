@@ -7,7 +7,7 @@ use crate::io::files::block_writer::write_records;
 use crate::io::files::loss::Loss;
 use crate::io::files::names::Naming;
 use crate::io::mesh_files::deck::{Deck, Encoding};
-use crate::io::mesh_files::element_groups::{Part, parts};
+use crate::io::mesh_files::element_groups::{ElementGroup, parts};
 use crate::io::mesh_files::elements::{KINDS, Kind};
 use crate::io::mesh_files::format::Format;
 use crate::io::mesh_files::losses::{left_out, names_lost};
@@ -39,7 +39,7 @@ fn write(deck: &Deck, out: &mut dyn Write) -> io::Result<Vec<Loss>> {
         }
         text.push(b'\n');
     })?;
-    let all: Vec<Part> = KINDS.iter().flat_map(|kind| parts(mesh, *kind)).collect();
+    let all: Vec<ElementGroup> = KINDS.iter().flat_map(|kind| parts(mesh, *kind)).collect();
     for part in &all {
         let mut names: Vec<&str> = part.sets.iter().map(|s| sets[*s].name.as_str()).collect();
         if names.is_empty() {

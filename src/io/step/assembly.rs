@@ -9,7 +9,7 @@ use crate::base::{job, limits};
 use crate::geometry::Motion;
 use crate::io::cad::assembly::Node;
 use crate::io::cad::defect::{Defect, defect};
-use crate::io::step::product_tables::{Occurrence, Tables};
+use crate::io::step::product_tables::{ProductUse, Tables};
 use crate::io::step::reader::{Frame, Step};
 use crate::io::step::records::File;
 use crate::io::step::units::{Units, of_context};
@@ -188,7 +188,7 @@ impl AssemblyReader<'_, '_> {
             };
             match placed {
                 Ok(placed) => {
-                    let Occurrence { child, name, entity, .. } = occurrence;
+                    let ProductUse { child, name, entity, .. } = occurrence;
                     self.product(child, Some(instance), name, entity, &placed.then(motion), depth + 1);
                 }
                 Err(Defect(why)) => self.step.warn(occurrence.entity, format!("skipped: its place cannot be read: {why}")),
@@ -287,7 +287,7 @@ impl AssemblyReader<'_, '_> {
     }
 
     /// The motion of an occurrence: the frame of one representation goes to that of the other.
-    fn link(&mut self, link: u32, occurrence: &Occurrence) -> Result<Motion, Defect> {
+    fn link(&mut self, link: u32, occurrence: &ProductUse) -> Result<Motion, Defect> {
         let file = self.step.file;
         let relation = file.under(link, b"REPRESENTATION_RELATIONSHIP").unwrap_or_else(|| file.parameters(link));
         let (first, second) = (relation.entity(2)?, relation.entity(3)?);

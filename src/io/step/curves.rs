@@ -13,7 +13,7 @@ use crate::geometry::{Curve, Kind};
 use crate::io::cad::curves::{check_reach, check_weights, ordered};
 use crate::io::cad::defect::{Defect, defect};
 use crate::io::step::conics::Endless;
-use crate::io::step::parameters::{Row, Value};
+use crate::io::step::parameters::{ParameterValue, Row};
 use crate::io::step::reader::{NESTED, Step};
 use crate::io::step::splines::Knotted;
 
@@ -150,8 +150,8 @@ impl Step<'_> {
     }
 
     /// What a trim says: a parameter of the file and a point.
-    fn trim(&self, value: Option<Value>) -> (Option<f64>, Option<DVec3>) {
-        let Some(list) = value.and_then(Value::list) else { return (None, None) };
+    fn trim(&self, value: Option<ParameterValue>) -> (Option<f64>, Option<DVec3>) {
+        let Some(list) = value.and_then(ParameterValue::list) else { return (None, None) };
         let number = list.values().find_map(|v| if v.entity().is_err() { v.number().ok() } else { None });
         let point = list.values().find_map(|v| v.entity().ok()).and_then(|p| self.point(p).ok());
         (number, point)
@@ -161,7 +161,7 @@ impl Step<'_> {
     fn trimmed(&self, of: &Course, row: Row) -> Result<Curve, Defect> {
         let (first, last) = (self.trim(row.get(2)), self.trim(row.get(3)));
         let ahead = row.flag(4, true);
-        let by_points = row.get(5).and_then(Value::word) == Some(b"CARTESIAN");
+        let by_points = row.get(5).and_then(ParameterValue::word) == Some(b"CARTESIAN");
         let numbers = first.0.zip(last.0);
         let points = first.1.zip(last.1);
         match (numbers, points) {

@@ -34,4 +34,4 @@ mod units;
 mod validation;
 pub mod write;
 
-pub use crate::io::step::open::{Opened, open};
+pub use crate::io::step::open::{OpenedStep, open};

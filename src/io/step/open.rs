@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 
 use crate::base::bbox::Box3;
-use crate::io::cad::part::Options;
+use crate::io::cad::part::ReadOptions;
 use crate::io::files::fault::Malformed;
 use crate::io::step::assembly::{Assembly, assembly};
 use crate::io::step::part21;
@@ -15,15 +15,15 @@ use crate::io::step::units::Units;
 
 /// A file read as far as its records and the places of its products, no geometry yet.
 #[derive(Debug)]
-pub struct Opened<'b> {
+pub struct OpenedStep<'b> {
     pub(super) file: File<'b>,
-    pub(super) options: Options,
+    pub(super) options: ReadOptions,
     pub(super) assembly: Assembly,
     pub(super) warnings: Vec<Malformed>,
 }
 
 /// Reads a file, or says where it stops being one.
-pub fn open<'b>(bytes: &'b [u8], options: &Options) -> Result<Opened<'b>, Malformed> {
+pub fn open<'b>(bytes: &'b [u8], options: &ReadOptions) -> Result<OpenedStep<'b>, Malformed> {
     let mut file = part21::read(bytes)?;
     if file.records.is_empty() {
         let why = file.warnings.first().map_or(String::new(), |w| format!(": {}", w.what));
@@ -36,10 +36,10 @@ pub fn open<'b>(bytes: &'b [u8], options: &Options) -> Result<Opened<'b>, Malfor
     if assembly.placed.is_empty() {
         warnings.push(Malformed::line(1, "the file has no shapes: no shape representation has an item"));
     }
-    Ok(Opened { file, options: *options, assembly, warnings })
+    Ok(OpenedStep { file, options: *options, assembly, warnings })
 }
 
-impl Opened<'_> {
+impl OpenedStep<'_> {
     /// A box that holds about all that is shown, model units: for the tolerance of the model.
     pub fn reach(&self) -> Box3 {
         let mut step = Step::new(&self.file, self.options);

@@ -1,7 +1,7 @@
 //! Values of parameter lists, with what is wrong with them in words.
 
 use crate::io::cad::defect::{Defect, defect};
-use crate::io::step::records::{File, Kind, Piece, Token};
+use crate::io::step::records::{File, Piece, Token, TokenKind};
 use crate::io::step::strings::decoded;
 
 /// A parameter list or a list in one.
@@ -17,7 +17,7 @@ pub struct Row<'f> {
 
 /// One value.
 #[derive(Clone, Copy, Debug)]
-pub struct Value<'f> {
+pub struct ParameterValue<'f> {
     row: Row<'f>,
     at: u32,
 }
@@ -40,11 +40,11 @@ impl File<'_> {
 
 impl<'f> Row<'f> {
     /// Its values.
-    pub fn values(self) -> impl Iterator<Item = Value<'f>> {
+    pub fn values(self) -> impl Iterator<Item = ParameterValue<'f>> {
         let mut at = self.first;
         std::iter::from_fn(move || {
             (at < self.end).then(|| {
-                let value = Value { row: self, at };
+                let value = ParameterValue { row: self, at };
                 at = value.behind();
                 value
             })
@@ -52,11 +52,11 @@ impl<'f> Row<'f> {
     }
 
     /// Value `k` from 0.
-    pub fn get(self, k: usize) -> Option<Value<'f>> {
+    pub fn get(self, k: usize) -> Option<ParameterValue<'f>> {
         self.values().nth(k)
     }
 
-    fn value(self, k: usize) -> Result<Value<'f>, Defect> {
+    fn value(self, k: usize) -> Result<ParameterValue<'f>, Defect> {
         self.get(k).ok_or_else(|| defect(format!("its parameter {} is missing", k + 1)))
     }
 
@@ -75,7 +75,7 @@ impl<'f> Row<'f> {
 
     /// The entities of the list at `k`.
     pub fn entities(self, k: usize) -> Result<Vec<u32>, Defect> {
-        self.list(k)?.values().map(Value::entity).collect::<Result<Vec<u32>, Defect>>()
+        self.list(k)?.values().map(ParameterValue::entity).collect::<Result<Vec<u32>, Defect>>()
     }
 
     /// The list at `k`.
@@ -91,7 +91,7 @@ impl<'f> Row<'f> {
 
     /// The numbers of the list at `k`.
     pub fn numbers(self, k: usize) -> Result<Vec<f64>, Defect> {
-        self.list(k)?.values().map(Value::number).collect()
+        self.list(k)?.values().map(ParameterValue::number).collect()
     }
 
     /// The whole number from 0 at `k`.
@@ -106,7 +106,7 @@ impl<'f> Row<'f> {
 
     /// The truth value at `k`; what is unknown counts as `otherwise`.
     pub fn flag(self, k: usize, otherwise: bool) -> bool {
-        match self.get(k).and_then(Value::word) {
+        match self.get(k).and_then(ParameterValue::word) {
             Some(b"T") => true,
             Some(b"F") => false,
             _ => otherwise,
@@ -115,18 +115,18 @@ impl<'f> Row<'f> {
 
     /// The text at `k`; empty for what is none.
     pub fn text(self, k: usize) -> String {
-        self.get(k).and_then(Value::text).unwrap_or_default()
+        self.get(k).and_then(ParameterValue::text).unwrap_or_default()
     }
 }
 
-impl<'f> Value<'f> {
+impl<'f> ParameterValue<'f> {
     fn token(self) -> Token {
         self.row.file.tokens[self.at as usize]
     }
 
     fn behind(self) -> u32 {
         let token = self.token();
-        if matches!(token.kind, Kind::List | Kind::Typed) { token.end.max(self.at + 1) } else { self.at + 1 }
+        if matches!(token.kind, TokenKind::List | TokenKind::Typed) { token.end.max(self.at + 1) } else { self.at + 1 }
     }
 
     fn span(self) -> &'f [u8] {
@@ -136,15 +136,15 @@ impl<'f> Value<'f> {
 
     /// Whether it is `$` or `*`.
     pub fn is_none(self) -> bool {
-        matches!(self.token().kind, Kind::Omitted | Kind::Derived)
+        matches!(self.token().kind, TokenKind::Omitted | TokenKind::Derived)
     }
 
     /// The record it refers to.
     pub fn entity(self) -> Result<u32, Defect> {
         let token = self.token();
         match token.kind {
-            Kind::Ref if token.end != Token::NONE => Ok(token.end),
-            Kind::Ref => Err(defect(format!("there is no entity #{}", token.start))),
+            TokenKind::Ref if token.end != Token::NONE => Ok(token.end),
+            TokenKind::Ref => Err(defect(format!("there is no entity #{}", token.start))),
             _ => Err(defect("an entity is missing")),
         }
     }
@@ -152,13 +152,13 @@ impl<'f> Value<'f> {
     /// The list it is, with or without a name before it.
     pub fn list(self) -> Option<Row<'f>> {
         let token = self.token();
-        matches!(token.kind, Kind::List | Kind::Typed).then(|| Row { first: self.at + 1, end: token.end, ..self.row })
+        matches!(token.kind, TokenKind::List | TokenKind::Typed).then(|| Row { first: self.at + 1, end: token.end, ..self.row })
     }
 
     /// The number it is, with or without a name before it.
     pub fn number(self) -> Result<f64, Defect> {
         match self.token().kind {
-            Kind::Number => {
+            TokenKind::Number => {
                 let text = std::str::from_utf8(self.span()).unwrap_or_default();
                 let x: Result<f64, _> = text.parse();
                 match x {
@@ -167,8 +167,8 @@ impl<'f> Value<'f> {
                     Err(_) => Err(defect(format!("`{text}` is not a number"))),
                 }
             }
-            Kind::Typed => match self.list().and_then(|row| row.get(0)) {
-                Some(inner) if inner.token().kind == Kind::Number => inner.number(),
+            TokenKind::Typed => match self.list().and_then(|row| row.get(0)) {
+                Some(inner) if inner.token().kind == TokenKind::Number => inner.number(),
                 _ => Err(defect("a number is missing")),
             },
             _ => Err(defect("a number is missing")),
@@ -177,14 +177,16 @@ impl<'f> Value<'f> {
 
     /// The enumeration it is, without dots.
     pub fn word(self) -> Option<&'f [u8]> {
-        (self.token().kind == Kind::Enum).then(|| self.span())
+        (self.token().kind == TokenKind::Enum).then(|| self.span())
     }
 
     /// The text it is.
     pub fn text(self) -> Option<String> {
         match self.token().kind {
-            Kind::Text => Some(decoded(self.span())),
-            Kind::Typed => self.list().and_then(|row| row.get(0)).filter(|v| v.token().kind == Kind::Text).map(|v| decoded(v.span())),
+            TokenKind::Text => Some(decoded(self.span())),
+            TokenKind::Typed => {
+                self.list().and_then(|row| row.get(0)).filter(|v| v.token().kind == TokenKind::Text).map(|v| decoded(v.span()))
+            }
             _ => None,
         }
     }

@@ -8,18 +8,18 @@ use crate::base::tolerance::Tolerance;
 use crate::base::{job, limits};
 use crate::geometry::Motion;
 use crate::io::cad::defect::Defect;
-use crate::io::cad::part::{Figure, Group, Item, Names, Part, Place, Shades, Stated};
+use crate::io::cad::part::{Figure, Group, Imported, Part, PartPlace, Shades, Stated, UniqueNames};
 use crate::io::files::fault::Malformed;
 use crate::io::step::assembly::{Assembly, Instance, Placed};
 use crate::io::step::items::{Bundle, BundleKind, Item as Shape, Unread};
-use crate::io::step::open::Opened;
+use crate::io::step::open::OpenedStep;
 use crate::io::step::reader::Step;
 use crate::io::step::records::File;
 use crate::io::step::styles::{Color, StyleTable};
 use crate::io::step::units::Units;
 use crate::io::step::validation::{self, Given, Of};
 
-impl Opened<'_> {
+impl OpenedStep<'_> {
     /// Makes curves and faces of the items.
     pub fn part(self, tolerance: Tolerance) -> Part {
         let Self { file, options, assembly, warnings } = self;
@@ -27,11 +27,11 @@ impl Opened<'_> {
         step.tolerance = tolerance;
         step.warnings = warnings;
         let unit = assembly.placed.first().map_or(Units::NONE, |p| p.units).name();
-        let builder = PartBuilder {
+        let builder = StepPartBuilder {
             styles: StyleTable::of(&file),
             step,
             part: Part { unit, mark: "#", model_unit: options.unit, ..Part::default() },
-            names: Names::default(),
+            names: UniqueNames::default(),
             shades: Shades::default(),
             made: BTreeMap::new(),
             held: assembly.instances.iter().map(|_| Group::default()).collect(),
@@ -42,14 +42,14 @@ impl Opened<'_> {
     }
 }
 
-struct PartBuilder<'f> {
+struct StepPartBuilder<'f> {
     step: Step<'f>,
     styles: StyleTable,
     part: Part,
-    names: Names,
+    names: UniqueNames,
     shades: Shades,
     /// Places of what was made of an entity, all copies of it.
-    made: BTreeMap<u32, Vec<Place>>,
+    made: BTreeMap<u32, Vec<PartPlace>>,
     /// What each instance has by itself.
     held: Vec<Group>,
     /// The solid or shell that took the name of an instance, being all it has.
@@ -64,7 +64,7 @@ fn given(name: String) -> Option<String> {
     (!name.is_empty() && name != "NONE").then(|| name.to_owned())
 }
 
-impl PartBuilder<'_> {
+impl StepPartBuilder<'_> {
     fn run(mut self, assembly: &Assembly) -> Part {
         let mut unread = Unread::new();
         let mut shapes: BTreeMap<u32, (Units, Shape)> = BTreeMap::new();
@@ -124,7 +124,7 @@ impl PartBuilder<'_> {
         let (solid, way) = (placed.item, assembly.way(placed));
         for (entity, p) in shape.points {
             let color = self.styles.curve(&[entity, solid], &way).cloned();
-            let at = Place::Point(self.part.points.len());
+            let at = PartPlace::Point(self.part.points.len());
             let item = self.named(entity, "point", self.part.points.len(), color, at, vec![placed.motion.point(p)]);
             self.part.points.push(item);
         }
@@ -135,13 +135,13 @@ impl PartBuilder<'_> {
                 self.step.warn(entity, "skipped: it is shorter than the tolerance");
                 continue;
             }
-            let at = Place::Curve(self.part.curves.len());
+            let at = PartPlace::Curve(self.part.curves.len());
             let item = self.named(entity, "curve", self.part.curves.len(), color, at, curve);
             self.part.curves.push(item);
         }
         for (entity, face, shell) in shape.faces {
             let color = self.styles.surface(&[entity, shell.unwrap_or(entity), solid], &way).cloned();
-            let at = Place::Surface(self.part.surfaces.len());
+            let at = PartPlace::Surface(self.part.surfaces.len());
             let face = if still { face } else { face.moved(&placed.motion) };
             let item = self.named(entity, "surface", self.part.surfaces.len(), color, at, face);
             self.part.surfaces.push(item);
@@ -166,9 +166,9 @@ impl PartBuilder<'_> {
     /// Puts a solid, shell or set into its lists.
     fn bundle(&mut self, bundle: &Bundle, mut group: Group, solid: &mut String, place: usize, instance: &Instance, alone: bool) {
         let own = given(self.step.file.parameters(bundle.entity).text(0));
-        let all = [Place::Point as fn(usize) -> Place, Place::Curve, Place::Surface];
+        let all = [PartPlace::Point as fn(usize) -> PartPlace, PartPlace::Curve, PartPlace::Surface];
         let members = [&group.points, &group.curves, &group.surfaces];
-        let members: Vec<Place> = all.iter().zip(members).flat_map(|(kind, list)| list.iter().map(|k| kind(*k))).collect();
+        let members: Vec<PartPlace> = all.iter().zip(members).flat_map(|(kind, list)| list.iter().map(|k| kind(*k))).collect();
         self.made.entry(bundle.entity).or_default().extend(members);
         if bundle.sort == BundleKind::Skin {
             group.name = own.clone().unwrap_or_else(|| solid.clone());
@@ -201,7 +201,7 @@ impl PartBuilder<'_> {
         self.part.groups.push(group);
     }
 
-    fn named<T>(&mut self, entity: u32, word: &str, before: usize, color: Option<Color>, at: Place, value: T) -> Item<T> {
+    fn named<T>(&mut self, entity: u32, word: &str, before: usize, color: Option<Color>, at: PartPlace, value: T) -> Imported<T> {
         self.made.entry(entity).or_default().push(at);
         let file = self.step.file;
         let own = given(file.parameters(entity).text(0));
@@ -210,7 +210,7 @@ impl PartBuilder<'_> {
             self.shades.group(&mut self.part.colors, *rgb, name).put(at);
         }
         let name = self.names.give(&wanted);
-        Item { name, own, color: color.map(|c| c.0), id: u64::from(file.id(entity)), line: file.line(entity), value }
+        Imported { name, own, color: color.map(|c| c.0), id: u64::from(file.id(entity)), line: file.line(entity), value }
     }
 
     /// Which product each face is of.
@@ -273,7 +273,7 @@ impl PartBuilder<'_> {
                 }
                 Of::Items(items) => {
                     let made = items.iter().flat_map(|item| self.made.get(item).into_iter().flatten());
-                    let faces = made.filter_map(|at| if let Place::Surface(k) = at { Some(*k) } else { None }).collect();
+                    let faces = made.filter_map(|at| if let PartPlace::Surface(k) = at { Some(*k) } else { None }).collect();
                     let copies = items.iter().filter_map(|item| uses.get(item)).copied().max().unwrap_or(1);
                     let placed = assembly.placed.iter().find(|p| items.contains(&p.item));
                     (faces, copies, placed, items.first().map_or(String::new(), |item| self.step.label(*item)))

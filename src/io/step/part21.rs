@@ -8,7 +8,7 @@ use std::cell::OnceCell;
 use crate::base::job;
 use crate::io::files::fault::Malformed;
 use crate::io::step::line_index::Places;
-use crate::io::step::records::{File, Kind, Piece, Record, Token};
+use crate::io::step::records::{File, Piece, Record, Token, TokenKind};
 
 /// Lists inside each other.
 const NESTED: usize = 256;
@@ -19,7 +19,7 @@ const READ_AGAIN: usize = 4;
 pub fn read(bytes: &[u8]) -> Result<File<'_>, Malformed> {
     let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
     crate::io::step::file_check::check(bytes)?;
-    let mut reader = Reader { bytes, at: 0, tokens: Vec::with_capacity(bytes.len() / 6), pieces: Vec::new(), open: Vec::new() };
+    let mut reader = Part21Reader { bytes, at: 0, tokens: Vec::with_capacity(bytes.len() / 6), pieces: Vec::new(), open: Vec::new() };
     let (mut records, mut wrong) = (Vec::with_capacity(bytes.len() / 64), Vec::new());
     let mut again = READ_AGAIN * bytes.len();
     let (mut sections, mut ended) = (0, false);
@@ -27,7 +27,7 @@ pub fn read(bytes: &[u8]) -> Result<File<'_>, Malformed> {
         sections += 1;
         ended = reader.section(&mut records, &mut wrong, &mut again);
     }
-    let Reader { tokens, pieces, at, .. } = reader;
+    let Part21Reader { tokens, pieces, at, .. } = reader;
     let lines = OnceCell::new();
     let mut file = File { bytes, tokens, records, pieces, places: Places::default(), lines, warnings: Vec::new() };
     if sections == 0 {
@@ -45,7 +45,7 @@ pub fn read(bytes: &[u8]) -> Result<File<'_>, Malformed> {
 /// What is wrong at a byte.
 type Wrong = (u32, String);
 
-struct Reader<'b> {
+struct Part21Reader<'b> {
     bytes: &'b [u8],
     at: usize,
     tokens: Vec<Token>,
@@ -63,7 +63,7 @@ fn is_word(c: u8) -> bool {
     c.is_ascii_alphanumeric() || c == b'_'
 }
 
-impl<'b> Reader<'b> {
+impl<'b> Part21Reader<'b> {
     fn peek(&self) -> u8 {
         self.bytes.get(self.at).copied().unwrap_or(0)
     }
@@ -249,7 +249,7 @@ impl<'b> Reader<'b> {
         Ok(())
     }
 
-    fn put(&mut self, kind: Kind, start: usize, end: usize) {
+    fn put(&mut self, kind: TokenKind, start: usize, end: usize) {
         self.tokens.push(Token { kind, start: start as u32, end: end as u32 });
     }
 
@@ -285,14 +285,14 @@ impl<'b> Reader<'b> {
             match c {
                 b'#' => {
                     let id = self.id()?;
-                    self.tokens.push(Token { kind: Kind::Ref, start: id, end: Token::NONE });
+                    self.tokens.push(Token { kind: TokenKind::Ref, start: id, end: Token::NONE });
                 }
                 b'+' | b'-' | b'.' | b'0'..=b'9' if c != b'.' || self.bytes.get(from + 1).is_some_and(u8::is_ascii_digit) => {
                     self.at += 1;
                     while matches!(self.peek(), b'0'..=b'9' | b'.' | b'E' | b'e' | b'+' | b'-') {
                         self.at += 1;
                     }
-                    self.put(Kind::Number, from, self.at);
+                    self.put(TokenKind::Number, from, self.at);
                 }
                 b'.' => {
                     self.at += 1;
@@ -300,23 +300,23 @@ impl<'b> Reader<'b> {
                     if self.peek() != b'.' {
                         return self.fail("an enumeration has no dot behind it");
                     }
-                    self.put(Kind::Enum, from + 1, self.at);
+                    self.put(TokenKind::Enum, from + 1, self.at);
                     self.at += 1;
                 }
                 b'\'' => self.quoted()?,
                 b'"' => {
                     let end = position(b'"', &self.bytes[from + 1..]);
                     let Some(n) = end else { return self.fail("a binary value does not end") };
-                    self.put(Kind::Binary, from + 1, from + 1 + n);
+                    self.put(TokenKind::Binary, from + 1, from + 1 + n);
                     self.at = from + n + 2;
                 }
                 b'$' | b'*' => {
                     self.at += 1;
-                    self.put(if c == b'$' { Kind::Omitted } else { Kind::Derived }, from, self.at);
+                    self.put(if c == b'$' { TokenKind::Omitted } else { TokenKind::Derived }, from, self.at);
                 }
                 b'(' => {
                     self.at += 1;
-                    self.opened(Kind::List, from)?;
+                    self.opened(TokenKind::List, from)?;
                     wants_value = true;
                 }
                 c if is_word(c) || c == b'!' => {
@@ -326,7 +326,7 @@ impl<'b> Reader<'b> {
                         return self.fail("a value is a bare word");
                     }
                     self.at += 1;
-                    self.opened(Kind::Typed, from)?;
+                    self.opened(TokenKind::Typed, from)?;
                     wants_value = true;
                 }
                 0 if from >= self.bytes.len() => return self.fail("the file ends within it"),
@@ -335,7 +335,7 @@ impl<'b> Reader<'b> {
         }
     }
 
-    fn opened(&mut self, kind: Kind, at: usize) -> Result<(), Wrong> {
+    fn opened(&mut self, kind: TokenKind, at: usize) -> Result<(), Wrong> {
         if self.open.len() >= NESTED {
             return self.fail(format!("more than {NESTED} lists are nested"));
         }
@@ -351,7 +351,7 @@ impl<'b> Reader<'b> {
         while let Some(n) = position(b'\'', &self.bytes[at..]) {
             at += n + 1;
             if self.bytes.get(at) != Some(&b'\'') {
-                self.put(Kind::Text, from, at - 1);
+                self.put(TokenKind::Text, from, at - 1);
                 self.at = at;
                 return Ok(());
             }

@@ -7,7 +7,7 @@ use crate::io::step::records::File;
 
 /// A product in another one.
 #[derive(Clone, Debug)]
-pub(crate) struct Occurrence {
+pub(crate) struct ProductUse {
     pub(super) entity: u32,
     pub(super) child: u32,
     pub(super) name: String,
@@ -23,7 +23,7 @@ pub(crate) struct Tables {
     pub(super) shapes: BTreeMap<u32, Vec<u32>>,
     /// Representations that are the same thing in the same place.
     pub(super) same: BTreeMap<u32, Vec<u32>>,
-    pub(super) occurrences: BTreeMap<u32, Vec<Occurrence>>,
+    pub(super) occurrences: BTreeMap<u32, Vec<ProductUse>>,
     /// Products that are parts of others.
     pub(super) parts: BTreeSet<u32>,
     /// Representations that mapped items place.
@@ -90,7 +90,7 @@ impl Tables {
             let text = |n: usize| row.text(n).trim().to_owned();
             let name = [1, 0, 5].into_iter().map(text).find(|t| !t.is_empty()).unwrap_or_default();
             tables.parts.insert(child);
-            tables.occurrences.entry(parent).or_default().push(Occurrence { entity: k, child, name, link: links.get(&k).copied() });
+            tables.occurrences.entry(parent).or_default().push(ProductUse { entity: k, child, name, link: links.get(&k).copied() });
         }
         tables
     }

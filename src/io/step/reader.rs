@@ -10,7 +10,7 @@ use crate::base::{limits, math};
 use crate::geometry::{Curve, Motion};
 use crate::io::cad::base_surface::Base;
 use crate::io::cad::defect::{Defect, defect};
-use crate::io::cad::part::{Options, Unusable};
+use crate::io::cad::part::{ReadOptions, Unusable};
 use crate::io::files::fault::Malformed;
 use crate::io::step::records::File;
 use crate::io::step::units::Units;
@@ -50,7 +50,7 @@ pub struct Step<'f> {
     /// Its records.
     pub file: &'f File<'f>,
     /// The model.
-    pub options: Options,
+    pub options: ReadOptions,
     /// Of the model.
     pub tolerance: Tolerance,
     /// The import.
@@ -75,7 +75,7 @@ pub struct Step<'f> {
 
 impl<'f> Step<'f> {
     /// Nothing made yet.
-    pub fn new(file: &'f File<'f>, options: Options) -> Self {
+    pub fn new(file: &'f File<'f>, options: ReadOptions) -> Self {
         Self {
             file,
             options,

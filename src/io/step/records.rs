@@ -8,7 +8,7 @@ use crate::io::step::line_index::{Lines, Places};
 
 /// What a token is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum TokenKind {
     /// A number; the span is its text.
     Number,
     /// A text; the span is what stands between the quotes.
@@ -33,7 +33,7 @@ pub enum Kind {
 #[derive(Clone, Copy, Debug)]
 pub struct Token {
     /// What it is.
-    pub kind: Kind,
+    pub kind: TokenKind,
     /// First byte.
     pub start: u32,
     /// Byte behind the last one.
@@ -90,7 +90,7 @@ impl<'b> File<'b> {
         }
         self.places = places;
         for token in job::looking(&mut self.tokens) {
-            if token.kind == Kind::Ref {
+            if token.kind == TokenKind::Ref {
                 token.end = self.places.find(token.start).unwrap_or(Token::NONE);
             }
         }

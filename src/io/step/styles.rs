@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::base::job;
 use crate::io::step::contexts::Contexts;
-use crate::io::step::records::{File, Kind};
+use crate::io::step::records::{File, TokenKind};
 
 /// Red, green and blue from 0 to 1, with the file's name.
 pub type Color = ([f64; 3], String);
@@ -149,7 +149,9 @@ fn found(file: &File, styles: &[u32], without: &[u8]) -> Option<Color> {
             _ => {}
         }
         let tokens = &file.tokens[row.first as usize..row.end as usize];
-        open.extend(tokens.iter().rev().filter(|t| t.kind == Kind::Ref && t.end != crate::io::step::records::Token::NONE).map(|t| t.end));
+        open.extend(
+            tokens.iter().rev().filter(|t| t.kind == TokenKind::Ref && t.end != crate::io::step::records::Token::NONE).map(|t| t.end),
+        );
     }
     None
 }

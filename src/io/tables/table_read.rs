@@ -20,13 +20,13 @@ pub fn read(bytes: &[u8], reading: &Reading) -> Result<Table, Malformed> {
 }
 
 /// Line numbers of growing places; a row starts behind the empty lines before it.
-pub(crate) struct LineReader<'a> {
+pub(crate) struct LineCounter<'a> {
     bytes: &'a [u8],
     at: usize,
     line: u64,
 }
 
-impl LineReader<'_> {
+impl LineCounter<'_> {
     fn of(&mut self, place: usize) -> u64 {
         while let Some(byte) = self.bytes.get(self.at)
             && (self.at < place || matches!(byte, b'\r' | b'\n'))
@@ -50,7 +50,7 @@ pub(crate) fn read_separated(text: &str, reading: &Reading) -> Result<Table, Mal
     let mut record = csv::StringRecord::new();
     let mut width = None;
     let mut first = true;
-    let mut lines = LineReader { bytes: text.as_bytes(), at: 0, line: 1 };
+    let mut lines = LineCounter { bytes: text.as_bytes(), at: 0, line: 1 };
     loop {
         job::poll();
         let more = reader.read_record(&mut record).map_err(|e| {

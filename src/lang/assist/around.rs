@@ -1,7 +1,7 @@
 //! What stands around a place: the operand before a dot, and the names that hold in its declaration alone.
 
 use crate::lang::assist::scripts::{Locals, Scripts};
-use crate::lang::assist::shape::Shape;
+use crate::lang::assist::shape::KnownType;
 use crate::lang::syntax::{Kind, Tokens, scan, split};
 use crate::lang::values::types::Ty;
 
@@ -83,17 +83,17 @@ pub(crate) fn locals(scripts: &Scripts<'_>, at: usize) -> Locals {
 }
 
 /// The type that is written behind a parameter.
-fn parameter<'t>(tokens: &Tokens, at: usize, end: usize, text: &impl Fn(usize, usize) -> &'t str) -> Shape {
+fn parameter<'t>(tokens: &Tokens, at: usize, end: usize, text: &impl Fn(usize, usize) -> &'t str) -> KnownType {
     let is = |at: usize, kind: Kind| at < end && tokens.kinds[at] == kind;
     if !is(at + 1, Kind::Colon) {
-        return Shape::Unknown;
+        return KnownType::Unknown;
     }
     let lists = (at + 2..end).take_while(|k| matches!(tokens.kinds[*k], Kind::OpenSquare | Kind::LineSquare)).count();
     let name = at + 2 + lists;
     if name >= end {
-        return Shape::Unknown;
+        return KnownType::Unknown;
     }
-    Ty::written(text(name, name), lists.min(2) as u8).map_or(Shape::Unknown, Shape::of)
+    Ty::written(text(name, name), lists.min(2) as u8).map_or(KnownType::Unknown, KnownType::of)
 }
 
 /// How many brackets are open before a token.

@@ -30,7 +30,7 @@ pub(crate) enum Role {
 
 /// An open bracket.
 #[derive(Clone, Debug)]
-pub(crate) struct Frame {
+pub(crate) struct OpenBracket {
     pub role: Role,
     /// The bracket's token; the keyword's at the top.
     pub at: usize,
@@ -46,7 +46,7 @@ pub(crate) struct Frame {
     pub clause: Option<usize>,
 }
 
-impl Frame {
+impl OpenBracket {
     fn new(role: Role, at: usize) -> Self {
         Self { role, at, item: at + 1, before: 0, named: Vec::new(), name: None, clause: None }
     }
@@ -58,9 +58,9 @@ impl Frame {
 }
 
 /// What is open before the token `end` of a declaration that starts at token `start`; the first is the declaration.
-pub(crate) fn frames(tokens: &Tokens, start: usize, end: usize) -> Vec<Frame> {
+pub(crate) fn frames(tokens: &Tokens, start: usize, end: usize) -> Vec<OpenBracket> {
     let keyword = tokens.kinds[start].keyword();
-    let mut open = vec![Frame::new(Role::Top, start)];
+    let mut open = vec![OpenBracket::new(Role::Top, start)];
     // What is asked of a session has no keyword.
     open[0].item = start + usize::from(keyword.is_some());
     for at in start..end {
@@ -69,7 +69,7 @@ pub(crate) fn frames(tokens: &Tokens, start: usize, end: usize) -> Vec<Frame> {
     open
 }
 
-fn step(tokens: &Tokens, keyword: Option<Keyword>, open: &mut Vec<Frame>, at: usize) {
+fn step(tokens: &Tokens, keyword: Option<Keyword>, open: &mut Vec<OpenBracket>, at: usize) {
     let before = at.checked_sub(1).map(|b| tokens.kinds[b]);
     let depth = open.len();
     let Some(frame) = open.last_mut() else { return };
@@ -82,17 +82,17 @@ fn step(tokens: &Tokens, keyword: Option<Keyword>, open: &mut Vec<Frame>, at: us
                 (_, Some(Kind::Name)) if tokens.kinds[at] == Kind::OpenRound => Role::Call(at - 1),
                 _ => Role::Round,
             };
-            open.push(Frame::new(role, at));
+            open.push(OpenBracket::new(role, at));
         }
         Kind::OpenSquare | Kind::LineSquare => {
             let index = before.is_some_and(Kind::ends_operand) && tokens.kinds[at] == Kind::OpenSquare;
-            open.push(Frame::new(if index { Role::Index } else { Role::List }, at));
+            open.push(OpenBracket::new(if index { Role::Index } else { Role::List }, at));
         }
         Kind::OpenCurly => {
             let role = block(tokens, keyword, frame, before).unwrap_or(Role::Other);
-            open.push(Frame::new(role, at));
+            open.push(OpenBracket::new(role, at));
         }
-        Kind::TextHead => open.push(Frame::new(Role::Other, at)),
+        Kind::TextHead => open.push(OpenBracket::new(Role::Other, at)),
         Kind::CloseRound | Kind::CloseSquare | Kind::CloseCurly | Kind::TextTail if depth > 1 => {
             open.pop();
             // Behind the block of a clause begins something else.
@@ -116,7 +116,7 @@ fn wants(before: Option<Kind>) -> bool {
 }
 
 /// `name:` begins an item of a call, a record or a block.
-fn name(tokens: &Tokens, frame: &mut Frame, colon: usize) {
+fn name(tokens: &Tokens, frame: &mut OpenBracket, colon: usize) {
     let Some(at) = colon.checked_sub(1).filter(|at| *at >= frame.item) else { return };
     match frame.role {
         Role::Call(_) | Role::Load | Role::Params | Role::Other if at == frame.item => {}
@@ -130,7 +130,7 @@ fn name(tokens: &Tokens, frame: &mut Frame, colon: usize) {
 }
 
 /// The settings that a `{` opens.
-fn block(tokens: &Tokens, keyword: Option<Keyword>, frame: &Frame, before: Option<Kind>) -> Option<Role> {
+fn block(tokens: &Tokens, keyword: Option<Keyword>, frame: &OpenBracket, before: Option<Kind>) -> Option<Role> {
     if !before.is_some_and(Kind::ends_operand) {
         return None;
     }

@@ -1,7 +1,7 @@
 //! What a call takes, whoever declares it: the language, a script, a module's params, or `import`.
 
-use crate::lang::assist::scripts::{Code, Scripts};
-use crate::lang::assist::shape::Shape;
+use crate::lang::assist::scripts::{NamedExpressions, Scripts};
+use crate::lang::assist::shape::KnownType;
 use crate::lang::eval::std::{Builtin, builtins, fields};
 use crate::lang::syntax::ast::{Allowed, DeclarationKind, FnParam, Keyword};
 use crate::lang::values::settings::FILE_UNITS;
@@ -38,7 +38,7 @@ pub struct Function {
     /// What it does.
     pub docs: String,
     /// What it gives.
-    pub gives: Shape,
+    pub gives: KnownType,
 }
 
 impl Parameter {
@@ -75,7 +75,7 @@ impl Function {
             params: builtin.params.iter().map(parameter).collect(),
             signature: builtin.signature(),
             docs: builtin.docs.trim().to_owned(),
-            gives: Shape::of(builtin.returns),
+            gives: KnownType::of(builtin.returns),
         }
     }
 
@@ -84,7 +84,7 @@ impl Function {
         let home = scripts.unit(unit);
         let (_, declaration) = home.declaration(name)?;
         let DeclarationKind::Fn { params, .. } = &declaration.kind else { return None };
-        let code = Code { unit, names: &home.names, nodes: &declaration.nodes };
+        let code = NamedExpressions { unit, names: &home.names, nodes: &declaration.nodes };
         let parameter = |p: &FnParam| {
             let ty = p.ty.and_then(|ty| Ty::written(code.text(ty.name), ty.lists)).unwrap_or(Ty::Any);
             let default = p.default.map(|d| code.nodes[d.index()].span).map(|span| home.source(span.start, span.end).to_owned());
@@ -93,7 +93,7 @@ impl Function {
         };
         let params: Vec<Parameter> = params.iter().map(parameter).collect();
         let gives = scripts.result_of_fn(unit, declaration);
-        let result = if gives == Shape::Unknown { String::new() } else { format!(" → {}", gives.signature()) };
+        let result = if gives == KnownType::Unknown { String::new() } else { format!(" → {}", gives.signature()) };
         let list: Vec<String> = params.iter().map(Parameter::signature).collect();
         let signature = format!("{name}({}){result}", list.join(", "));
         Some(Self { name: name.to_owned(), params, signature, docs: declaration.doc.as_deref().unwrap_or("").to_owned(), gives })
@@ -106,7 +106,7 @@ impl Function {
         let params: Vec<Parameter> = home.order.iter().filter_map(of_name).collect();
         let list: Vec<String> = params.iter().map(Parameter::signature).collect();
         let signature = format!("use \"…\" ({})", list.join(", "));
-        Self { name: "use".to_owned(), params, signature, docs: String::new(), gives: Shape::Unknown }
+        Self { name: "use".to_owned(), params, signature, docs: String::new(), gives: KnownType::Unknown }
     }
 
     /// A `param` of a script.
@@ -126,7 +126,7 @@ impl Function {
             _ => None,
         };
         let shape = scripts.shape_of_name(unit, name, &Vec::new());
-        let ty = if let Shape::Is(ty) = shape { ty } else { Ty::Any };
+        let ty = if let KnownType::Is(ty) = shape { ty } else { Ty::Any };
         let docs = declaration.doc.as_deref().unwrap_or("");
         let default = Some(source(value.index(), value.index()));
         Some(Parameter { shown: shape.signature(), default, range, words, ..Parameter::new(name, ty, docs) })
@@ -139,6 +139,6 @@ impl Function {
             Parameter::new("unit", Ty::Choice(FILE_UNITS), "Unit of the bare numbers in the file."),
         ];
         let signature = "import \"…\" (header: bool, unit: mm|…)".to_owned();
-        Self { name: "import".to_owned(), params, signature, docs: String::new(), gives: Shape::Unknown }
+        Self { name: "import".to_owned(), params, signature, docs: String::new(), gives: KnownType::Unknown }
     }
 }

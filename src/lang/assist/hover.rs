@@ -1,9 +1,9 @@
 //! What a word means where it stands.
 
 use crate::lang::assist::function::{Function, Parameter};
-use crate::lang::assist::place::{Place, stand};
+use crate::lang::assist::place::{CompletionPlace, stand};
 use crate::lang::assist::scripts::Scripts;
-use crate::lang::assist::shape::Shape;
+use crate::lang::assist::shape::KnownType;
 use crate::lang::eval::std::{builtins, fields};
 use crate::lang::syntax::ast::Keyword;
 use crate::lang::syntax::keywords;
@@ -49,9 +49,9 @@ pub(crate) fn about(scripts: &Scripts<'_>, at: usize) -> Option<About> {
     let (names, calls) = (behind.starts_with(':'), text[end..].starts_with('('));
     let here = stand(scripts, start);
     let found = match &here.place {
-        Place::Member(shape) => return of_member(scripts, shape, word, calls).map(About::Words),
-        Place::Key(table, ..) if names => table.iter().find(|s| s.key == word).map(of_setting),
-        Place::Value(wanted) => match (&wanted.call, wanted.ty.and_then(Ty::choices)) {
+        CompletionPlace::Member(shape) => return of_member(scripts, shape, word, calls).map(About::Words),
+        CompletionPlace::Key(table, ..) if names => table.iter().find(|s| s.key == word).map(of_setting),
+        CompletionPlace::Value(wanted) => match (&wanted.call, wanted.ty.and_then(Ty::choices)) {
             (Some((function, _)), _) if names => function.params.iter().find(|p| p.name == word).map(|p| of_parameter(function, p)),
             (_, Some(words)) if words.contains(&word) => {
                 let of_call = || here.call.as_ref().and_then(|(f, at)| Some(of_parameter(f, f.params.get((*at)?)?)));
@@ -106,15 +106,15 @@ fn of_declared(scripts: &Scripts<'_>, unit: usize, name: &str) -> Option<(String
     Some((line, docs))
 }
 
-fn of_member(scripts: &Scripts<'_>, shape: &Shape, word: &str, calls: bool) -> Option<String> {
+fn of_member(scripts: &Scripts<'_>, shape: &KnownType, word: &str, calls: bool) -> Option<String> {
     match shape {
-        Shape::Module(module) => {
+        KnownType::Module(module) => {
             return match Function::of_script(scripts, *module, word) {
                 Some(function) => Some(hover_text(&format!("fn {}", function.signature), &function.docs)),
                 None => of_declared(scripts, *module, word).map(|(line, docs)| hover_text(&line, &docs)),
             };
         }
-        Shape::Record(keys) => {
+        KnownType::Record(keys) => {
             if let Some((_, of)) = keys.iter().find(|(key, _)| key == word) {
                 return Some(hover_text(&format!("{word}: {}", of.signature()), ""));
             }

@@ -16,8 +16,8 @@ pub mod shape;
 pub use crate::lang::assist::function::{Function, Parameter};
 pub use crate::lang::assist::hover::{About, hover_text};
 pub use crate::lang::assist::offer::{Candidate, Offer, Sort};
-pub use crate::lang::assist::scripts::{Known, Open};
-pub use crate::lang::assist::shape::Shape;
+pub use crate::lang::assist::scripts::{Known, OpenFile};
+pub use crate::lang::assist::shape::KnownType;
 
 use crate::lang::assist::scripts::Scripts;
 
@@ -26,20 +26,20 @@ pub const LONGEST: usize = 4 << 20;
 
 /// A text, and what is around it.
 #[derive(Clone, Copy)]
-pub struct Script<'s> {
+pub struct EditedScript<'s> {
     /// The text as it stands.
     pub text: &'s str,
-    /// Its path, as [`Open`] takes it.
+    /// Its path, as [`OpenFile`] takes it.
     pub path: &'s str,
     /// Reads modules.
-    pub open: Open<'s>,
+    pub open: OpenFile<'s>,
     /// What the last run showed.
     pub known: &'s Known,
     /// A line of a session, which may also be an expression.
     pub session: bool,
 }
 
-impl Script<'_> {
+impl EditedScript<'_> {
     fn read(&self) -> Scripts<'_> {
         Scripts::new(self.text, self.path, self.open, self.known)
     }

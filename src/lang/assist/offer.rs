@@ -1,9 +1,9 @@
 //! Candidates for a place, the likeliest first.
 
 use crate::lang::assist::function::{Function, Parameter};
-use crate::lang::assist::place::{Place, Stand, Wanted, stand};
+use crate::lang::assist::place::{CompletionPlace, Stand, Wanted, stand};
 use crate::lang::assist::scripts::{Scripts, Unit};
-use crate::lang::assist::shape::Shape;
+use crate::lang::assist::shape::KnownType;
 use crate::lang::eval::std::{Builtin, builtins, fields};
 use crate::lang::syntax::ast::Keyword;
 use crate::lang::syntax::keywords::{WORDS, openers, written};
@@ -92,16 +92,16 @@ pub(crate) fn offer(scripts: &Scripts<'_>, at: usize, session: bool) -> Offer {
     let home = scripts.unit(0);
     let mut here = stand(scripts, at);
     let mut offered = Offered { word: &home.text[here.start..at], found: Vec::new() };
-    match std::mem::replace(&mut here.place, Place::Nothing) {
-        Place::Nothing => {}
-        Place::Start => {
+    match std::mem::replace(&mut here.place, CompletionPlace::Nothing) {
+        CompletionPlace::Nothing => {}
+        CompletionPlace::Start => {
             offered.keywords(0);
             if session {
                 values(scripts, &mut offered, &here, &Wanted::default());
             }
         }
-        Place::Member(shape) => members(scripts, &mut offered, &shape),
-        Place::Key(table, clauses, given) => {
+        CompletionPlace::Member(shape) => members(scripts, &mut offered, &shape),
+        CompletionPlace::Key(table, clauses, given) => {
             table
                 .iter()
                 .filter(|s| !given.contains(&s.key.to_owned()))
@@ -111,16 +111,16 @@ pub(crate) fn offer(scripts: &Scripts<'_>, at: usize, session: bool) -> Offer {
                 offered.put(&format!("{} ", word.word), form.to_owned(), Sort::Keyword, POSSIBLE);
             }
         }
-        Place::Value(wanted) => values(scripts, &mut offered, &here, &wanted),
-        Place::Behind(words) => {
+        CompletionPlace::Value(wanted) => values(scripts, &mut offered, &here, &wanted),
+        CompletionPlace::Behind(words) => {
             let form = |word: &str| WORDS.iter().find(|w| w.word == word).map_or("", |w| w.form).lines().next().unwrap_or("").to_owned();
             words.iter().for_each(|word| offered.put(word, form(word), Sort::Keyword, 0));
             if !offered.word.is_empty() {
                 offered.keywords(OTHER);
             }
         }
-        Place::Type => offered.words(TYPE_NAMES, 0),
-        Place::Words(words) => offered.words(&words, 0),
+        CompletionPlace::Type => offered.words(TYPE_NAMES, 0),
+        CompletionPlace::Words(words) => offered.words(&words, 0),
     }
     let mut candidates = offered.found;
     write_once(&mut candidates, &home.text[at..]);
@@ -148,20 +148,20 @@ fn of_setting(setting: &Setting) -> String {
 }
 
 /// `curve` of a curve, `param: length` of a param.
-fn of_name(keyword: Keyword, shape: &Shape) -> String {
+fn of_name(keyword: Keyword, shape: &KnownType) -> String {
     let (word, shown) = (written(keyword), shape.signature());
     if shown.is_empty() || shown == word || word.ends_with(&shown) { word.to_owned() } else { format!("{word}: {shown}") }
 }
 
-fn members(scripts: &Scripts<'_>, offered: &mut Offered<'_>, shape: &Shape) {
+fn members(scripts: &Scripts<'_>, offered: &mut Offered<'_>, shape: &KnownType) {
     match shape {
-        Shape::Module(module) => return of_module(scripts, offered, *module),
-        Shape::Record(keys) => {
+        KnownType::Module(module) => return of_module(scripts, offered, *module),
+        KnownType::Record(keys) => {
             keys.iter().filter(|(key, _)| is_name(key)).for_each(|(key, of)| offered.put(key, of.signature(), Sort::Field, 0))
         }
         _ => {}
     }
-    let known = *shape != Shape::Unknown;
+    let known = *shape != KnownType::Unknown;
     for field in fields().filter(|f| f.params.first().is_some_and(|p| shape.has_fields_of(p.ty))) {
         let about = format!("{}: {}", field.returns.signature(), field.summary());
         offered.put(field.name, about, Sort::Field, 0);
@@ -175,7 +175,7 @@ fn members(scripts: &Scripts<'_>, offered: &mut Offered<'_>, shape: &Shape) {
     }
     for builtin in builtins() {
         let Some(first) = builtin.params.first() else { continue };
-        let meant = !matches!(first.ty, Ty::Any | Ty::Rest(_) | Ty::List(Ty::Any)) || matches!(shape, Shape::List(_));
+        let meant = !matches!(first.ty, Ty::Any | Ty::Rest(_) | Ty::List(Ty::Any)) || matches!(shape, KnownType::List(_));
         if shape.fits(first.ty) && (meant || !known || !offered.word.is_empty()) {
             offered.builtin(builtin, if meant { FUNCTION } else { OTHER });
         }
@@ -215,17 +215,17 @@ fn values(scripts: &Scripts<'_>, offered: &mut Offered<'_>, here: &Stand, wanted
     let home = scripts.unit(0);
     let ty = wanted.ty.filter(|ty| *ty != Ty::Any);
     // A name that does not fit may lead to something that does, once it is begun.
-    let rank = |shape: &Shape| match ty {
+    let rank = |shape: &KnownType| match ty {
         None => Some(0),
-        Some(ty) if shape.fits(ty) => Some(if *shape == Shape::Unknown { POSSIBLE } else { 0 }),
+        Some(ty) if shape.fits(ty) => Some(if *shape == KnownType::Unknown { POSSIBLE } else { 0 }),
         Some(_) if offered.word.is_empty() => None,
         Some(_) => Some(OTHER),
     };
-    let rank_of_local: Vec<(String, Shape, Option<u8>)> =
+    let rank_of_local: Vec<(String, KnownType, Option<u8>)> =
         here.locals.iter().map(|(name, shape)| (name.clone(), shape.clone(), rank(shape))).collect();
     let own = own_name(&home, here.start);
     let names = home.order.iter().filter(|name| Some(name.as_str()) != own);
-    let of_names: Vec<(&String, Shape, Option<u8>)> = names
+    let of_names: Vec<(&String, KnownType, Option<u8>)> = names
         .filter(|name| home.declared.get(*name).is_some_and(|entry| entry.keyword != Keyword::Fn))
         .map(|name| (name, scripts.shape_of_name(0, name, &Vec::new())))
         .map(|(name, shape)| (name, rank(&shape), shape))
@@ -245,7 +245,7 @@ fn values(scripts: &Scripts<'_>, offered: &mut Offered<'_>, here: &Stand, wanted
     if let Some(words) = ty.and_then(Ty::choices) {
         offered.words(words, 0);
     }
-    if ty.is_some_and(|ty| Shape::Is(Ty::Bool).fits(ty)) {
+    if ty.is_some_and(|ty| KnownType::Is(Ty::Bool).fits(ty)) {
         offered.words(&["true", "false"], 0);
     }
     functions(scripts, offered, ty, typed);
@@ -260,19 +260,19 @@ fn values(scripts: &Scripts<'_>, offered: &mut Offered<'_>, here: &Stand, wanted
 
 /// Functions that give what is wanted; others once they are begun.
 fn functions(scripts: &Scripts<'_>, offered: &mut Offered<'_>, ty: Option<Ty>, typed: bool) {
-    let rank = |gives: &Shape| match ty {
+    let rank = |gives: &KnownType| match ty {
         None => Some(FUNCTION),
-        Some(ty) if *gives != Shape::Unknown && gives.fits(ty) => Some(FUNCTION),
+        Some(ty) if *gives != KnownType::Unknown && gives.fits(ty) => Some(FUNCTION),
         _ if typed => Some(OTHER),
         _ => None,
     };
     let home = scripts.unit(0);
     for function in home.order.iter().filter_map(|name| Function::of_script(scripts, 0, name)) {
-        let known = rank(&function.gives).or((function.gives == Shape::Unknown).then_some(OTHER));
+        let known = rank(&function.gives).or((function.gives == KnownType::Unknown).then_some(OTHER));
         known.into_iter().for_each(|rank| offered.function(&function, rank));
     }
     for builtin in builtins() {
-        if let Some(rank) = rank(&Shape::of(builtin.returns)) {
+        if let Some(rank) = rank(&KnownType::of(builtin.returns)) {
             offered.builtin(builtin, rank);
         }
     }

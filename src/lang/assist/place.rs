@@ -1,10 +1,10 @@
 //! Where a place in a text stands: what may follow there, found in the tokens before it, so that half-typed text will do.
 
 use crate::lang::assist::around::{locals, operand};
-use crate::lang::assist::frames::{Frame, Role, frames};
+use crate::lang::assist::frames::{OpenBracket, Role, frames};
 use crate::lang::assist::function::Function;
 use crate::lang::assist::scripts::{Locals, Scripts};
-use crate::lang::assist::shape::Shape;
+use crate::lang::assist::shape::KnownType;
 use crate::lang::syntax::ast::Keyword;
 use crate::lang::syntax::{Kind, Tokens, scan, split};
 use crate::lang::values::settings::Setting;
@@ -14,13 +14,13 @@ use crate::lang::values::value::Dim;
 
 /// What may stand at a place.
 #[derive(Debug)]
-pub(crate) enum Place {
+pub(crate) enum CompletionPlace {
     /// Nothing that is known: a comment, a number, a name that is being made.
     Nothing,
     /// A declaration, or what is asked of a session.
     Start,
     /// What the value before a dot has.
-    Member(Shape),
+    Member(KnownType),
     /// A key of a block; with clauses of a mesh where these may stand. Keys that are given already follow.
     Key(&'static [Setting], bool, Vec<String>),
     /// A value.
@@ -47,7 +47,7 @@ pub(crate) struct Wanted {
 
 /// A place in a script.
 pub(crate) struct Stand {
-    pub place: Place,
+    pub place: CompletionPlace,
     pub locals: Locals,
     /// First byte of the word at hand.
     pub start: usize,
@@ -63,7 +63,7 @@ pub(crate) fn stand(scripts: &Scripts<'_>, at: usize) -> Stand {
     let before = &home.text[..at];
     let tokens = scan(before);
     let mut n = tokens.len();
-    let mut found = Stand { place: Place::Nothing, locals: Locals::new(), start: at, call: None, setting: None };
+    let mut found = Stand { place: CompletionPlace::Nothing, locals: Locals::new(), start: at, call: None, setting: None };
     let ends_here = tokens.ends.last().is_some_and(|end| *end as usize == at);
     let in_comment =
         tokens.quiet_from.is_some() || tokens.comments.iter().chain(tokens.docs.iter().map(|d| &d.1)).any(|span| span.end as usize == at);
@@ -83,7 +83,7 @@ pub(crate) fn stand(scripts: &Scripts<'_>, at: usize) -> Stand {
     }
     let (pieces, _) = split(&tokens);
     let Some(piece) = pieces.last().filter(|piece| piece.tokens.start < n) else {
-        found.place = Place::Start;
+        found.place = CompletionPlace::Start;
         return found;
     };
     let start = piece.tokens.start;
@@ -91,7 +91,7 @@ pub(crate) fn stand(scripts: &Scripts<'_>, at: usize) -> Stand {
     let last = tokens.kinds[n - 1];
     let fresh = before[tokens.ends[n - 1] as usize..found.start].contains('\n');
     if fresh && open.len() == 1 && last.ends_operand() {
-        found.place = Place::Start;
+        found.place = CompletionPlace::Start;
         return found;
     }
     found.locals = locals(scripts, at);
@@ -110,7 +110,7 @@ struct Reader<'r> {
     start: usize,
     /// The token behind the last one before the place.
     n: usize,
-    open: &'r [Frame],
+    open: &'r [OpenBracket],
     locals: &'r mut Locals,
 }
 
@@ -127,27 +127,27 @@ impl Reader<'_> {
         self.kind(self.start).keyword()
     }
 
-    fn place(&mut self) -> Place {
+    fn place(&mut self) -> CompletionPlace {
         let last = self.n - 1;
         if self.kind(last) == Kind::Dot {
-            return Place::Member(self.shape_before(last));
+            return CompletionPlace::Member(self.shape_before(last));
         }
-        let Some(frame) = self.open.last() else { return Place::Nothing };
+        let Some(frame) = self.open.last() else { return CompletionPlace::Nothing };
         match frame.role {
             Role::Top => self.at_top(frame),
             Role::Params => self.in_params(frame),
             Role::Settings(table, clauses) => self.in_settings(frame, table, clauses),
-            _ if self.kind(last).ends_operand() => Place::Behind(vec!["and", "or", "within", "for", "if", "then", "else", "in"]),
-            Role::Other if frame.name.is_none() && self.kind(frame.at) == Kind::OpenCurly && last == frame.at => Place::Nothing,
+            _ if self.kind(last).ends_operand() => CompletionPlace::Behind(vec!["and", "or", "within", "for", "if", "then", "else", "in"]),
+            Role::Other if frame.name.is_none() && self.kind(frame.at) == Kind::OpenCurly && last == frame.at => CompletionPlace::Nothing,
             _ => self.value(self.open.len() - 1),
         }
     }
 
     /// A value behind the last token; the type that is wanted is that of the item, unless an operator stands between.
-    fn value(&mut self, frame: usize) -> Place {
+    fn value(&mut self, frame: usize) -> CompletionPlace {
         let last = self.kind(self.n - 1);
         let ty = match last {
-            Kind::For => return Place::Nothing,
+            Kind::For => return CompletionPlace::Nothing,
             Kind::Plus | Kind::Minus | Kind::Then | Kind::Else => self.wanted(frame),
             Kind::And => Some(Ty::OneOf(&[Ty::Curve, Ty::Surface, Ty::Shell, Ty::Mesh, Ty::Plane])),
             Kind::In => Some(Ty::List(&Ty::Any)),
@@ -164,7 +164,7 @@ impl Reader<'_> {
             Some(function) => self.parameter(here, &function).map_or(Vec::new(), |place| function.params[place].words.clone()),
             None => Vec::new(),
         };
-        Place::Value(Wanted { ty, words, named: load && here.name.is_none(), call: call.map(|call| (call, given)) })
+        CompletionPlace::Value(Wanted { ty, words, named: load && here.name.is_none(), call: call.map(|call| (call, given)) })
     }
 
     /// What an item of a bracket must be.
@@ -199,7 +199,7 @@ impl Reader<'_> {
     }
 
     /// The setting whose value is at hand.
-    fn setting_of(&self, frame: &Frame) -> Option<&'static Setting> {
+    fn setting_of(&self, frame: &OpenBracket) -> Option<&'static Setting> {
         let Role::Settings(table, _) = frame.role else { return None };
         let name = self.text(frame.name?);
         table.iter().find(|setting| setting.key == name)
@@ -218,13 +218,13 @@ impl Reader<'_> {
         }
     }
 
-    fn at_top(&mut self, frame: &Frame) -> Place {
+    fn at_top(&mut self, frame: &OpenBracket) -> CompletionPlace {
         let last = self.n - 1;
         let tokens: Vec<Kind> = (frame.item..self.n).map(|at| self.kind(at)).collect();
         let has = |kind: Kind| tokens.contains(&kind);
         let Some(keyword) = self.keyword() else {
             return if tokens.last().is_some_and(|k| k.ends_operand()) {
-                Place::Behind(vec!["and", "or", "within"])
+                CompletionPlace::Behind(vec!["and", "or", "within"])
             } else {
                 self.value(0)
             };
@@ -243,59 +243,59 @@ impl Reader<'_> {
         );
         if last == self.start {
             return match keyword {
-                Keyword::Units => Place::Words(LENGTHS.iter().map(|unit| unit.name).collect()),
-                Keyword::ModelingCurve => Place::Words(vec!["curve"]),
-                Keyword::Use | Keyword::Import => Place::Nothing,
-                _ if names => Place::Nothing,
+                Keyword::Units => CompletionPlace::Words(LENGTHS.iter().map(|unit| unit.name).collect()),
+                Keyword::ModelingCurve => CompletionPlace::Words(vec!["curve"]),
+                Keyword::Use | Keyword::Import => CompletionPlace::Nothing,
+                _ if names => CompletionPlace::Nothing,
                 _ => self.value(0),
             };
         }
         match self.kind(last) {
-            Kind::Curve if keyword == Keyword::ModelingCurve => Place::Nothing,
-            Kind::As | Kind::For => Place::Nothing,
-            Kind::Colon if matches!(keyword, Keyword::Param | Keyword::Fn) && !has(Kind::Equals) => Place::Type,
-            kind if kind.ends_operand() => Place::Behind(behind(keyword, &has)),
+            Kind::Curve if keyword == Keyword::ModelingCurve => CompletionPlace::Nothing,
+            Kind::As | Kind::For => CompletionPlace::Nothing,
+            Kind::Colon if matches!(keyword, Keyword::Param | Keyword::Fn) && !has(Kind::Equals) => CompletionPlace::Type,
+            kind if kind.ends_operand() => CompletionPlace::Behind(behind(keyword, &has)),
             Kind::Of | Kind::Equals => self.value(0),
             kind if kind.wants_value() || kind == Kind::To || kind == Kind::Comma => self.value(0),
-            _ => Place::Nothing,
+            _ => CompletionPlace::Nothing,
         }
     }
 
-    fn in_params(&mut self, frame: &Frame) -> Place {
+    fn in_params(&mut self, frame: &OpenBracket) -> CompletionPlace {
         match self.kind(self.n - 1) {
-            Kind::Colon => Place::Type,
-            Kind::OpenSquare | Kind::LineSquare => Place::Type,
-            Kind::Equals => Place::Value(Wanted::default()),
-            kind if kind.is_infix() && frame.name.is_some() => Place::Value(Wanted::default()),
-            _ => Place::Nothing,
+            Kind::Colon => CompletionPlace::Type,
+            Kind::OpenSquare | Kind::LineSquare => CompletionPlace::Type,
+            Kind::Equals => CompletionPlace::Value(Wanted::default()),
+            kind if kind.is_infix() && frame.name.is_some() => CompletionPlace::Value(Wanted::default()),
+            _ => CompletionPlace::Nothing,
         }
     }
 
-    fn in_settings(&mut self, frame: &Frame, table: &'static [Setting], clauses: bool) -> Place {
+    fn in_settings(&mut self, frame: &OpenBracket, table: &'static [Setting], clauses: bool) -> CompletionPlace {
         let last = self.kind(self.n - 1);
         let given = || frame.named.iter().map(|at| self.text(*at).to_owned()).collect();
         match frame.clause {
-            Some(clause) if last.ends_operand() && self.n - 1 > clause => Place::Nothing,
+            Some(clause) if last.ends_operand() && self.n - 1 > clause => CompletionPlace::Nothing,
             Some(clause) => {
                 let ty = match self.kind(clause) {
                     Kind::On => Ty::List(&Ty::OneOf(&[Ty::Link, Ty::Curve, Ty::Edge, Ty::Surface, Ty::Patch, Ty::Shell])),
                     Kind::Near => Ty::List(&Ty::OneOf(&[Ty::Point, Ty::Node, Ty::Vertex, Ty::Curve, Ty::Link, Ty::Edge])),
                     _ => Ty::Record,
                 };
-                Place::Value(Wanted { ty: Some(ty), ..Wanted::default() })
+                CompletionPlace::Value(Wanted { ty: Some(ty), ..Wanted::default() })
             }
-            None if last == Kind::OpenCurly || last == Kind::Comma || last.ends_operand() => Place::Key(table, clauses, given()),
+            None if last == Kind::OpenCurly || last == Kind::Comma || last.ends_operand() => CompletionPlace::Key(table, clauses, given()),
             None => self.value(self.open.len() - 1),
         }
     }
 
     /// What is called, or given params, in a bracket.
-    fn function(&mut self, frame: &Frame) -> Option<Function> {
+    fn function(&mut self, frame: &OpenBracket) -> Option<Function> {
         match frame.role {
             Role::Call(at) => {
                 let name = self.text(at).to_owned();
                 if at > self.start && self.kind(at - 1) == Kind::Dot {
-                    if let Shape::Module(module) = self.shape_before(at - 1) {
+                    if let KnownType::Module(module) = self.shape_before(at - 1) {
                         return Function::of_script(self.scripts, module, &name);
                     }
                     // What stands before the dot is the first argument.
@@ -317,7 +317,7 @@ impl Reader<'_> {
     }
 
     /// The parameter that the item of a call is for.
-    fn parameter(&self, frame: &Frame, function: &Function) -> Option<usize> {
+    fn parameter(&self, frame: &OpenBracket, function: &Function) -> Option<usize> {
         if let Some(name) = frame.name {
             let name = self.text(name);
             return function.params.iter().position(|p| p.name == name);
@@ -344,8 +344,8 @@ impl Reader<'_> {
     }
 
     /// The type of the operand that ends before a dot.
-    fn shape_before(&mut self, dot: usize) -> Shape {
-        let Some(first) = operand(self.tokens, self.start, dot) else { return Shape::Unknown };
+    fn shape_before(&mut self, dot: usize) -> KnownType {
+        let Some(first) = operand(self.tokens, self.start, dot) else { return KnownType::Unknown };
         let text = &self.source[self.tokens.starts[first] as usize..self.tokens.starts[dot] as usize];
         self.scripts.shape_of_text(0, text, self.locals)
     }

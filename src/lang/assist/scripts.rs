@@ -4,7 +4,7 @@ use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use crate::lang::assist::shape::Shape;
+use crate::lang::assist::shape::KnownType;
 use crate::lang::diag::diagnostic::FileId;
 use crate::lang::diag::span::Span;
 use crate::lang::syntax::ast::{Declaration, DeclarationKind, Keyword, Node, Script};
@@ -13,9 +13,9 @@ use crate::lang::syntax::parse;
 use crate::lang::words::names::{Name, Names};
 
 /// Gives path and text of the file that a script (its path first) names so in `use`.
-pub type Open<'o> = &'o dyn Fn(&str, &str) -> Option<(String, String)>;
+pub type OpenFile<'o> = &'o dyn Fn(&str, &str) -> Option<(String, String)>;
 /// What the last run showed of the names of the script.
-pub type Known = BTreeMap<String, Shape>;
+pub type Known = BTreeMap<String, KnownType>;
 
 /// Modules that are read at most.
 const MODULES: usize = 64;
@@ -27,17 +27,17 @@ pub(crate) struct Unit {
     pub script: Script,
     pub names: Names,
     /// All names with their keywords, of broken declarations too; of two of a name the first counts.
-    pub declared: BTreeMap<String, Entry>,
+    pub declared: BTreeMap<String, ScriptName>,
     /// Those names in order of writing.
     pub order: Vec<String>,
     /// All declarations, with the names they bind.
     pub spans: Vec<(Span, Option<Span>)>,
-    pub shapes: RefCell<BTreeMap<usize, Shape>>,
+    pub shapes: RefCell<BTreeMap<usize, KnownType>>,
 }
 
 /// A name of a script.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Entry {
+pub(crate) struct ScriptName {
     pub keyword: Keyword,
     /// Its declaration, when that is sound.
     pub declaration: Option<usize>,
@@ -53,13 +53,13 @@ impl Unit {
             let (Some(keyword), Some(span)) = (o.keyword, o.name) else { continue };
             let name = &text[span.start as usize..span.end as usize];
             if !declared.contains_key(name) {
-                declared.insert(name.to_owned(), Entry { keyword, declaration: None });
+                declared.insert(name.to_owned(), ScriptName { keyword, declaration: None });
                 order.push(name.to_owned());
             }
         }
         for (at, declaration) in script.declarations.iter().enumerate().rev() {
             let Some(bound) = crate::lang::syntax::scopes::bound(declaration) else { continue };
-            let entry = Entry { keyword: declaration.keyword, declaration: Some(at) };
+            let entry = ScriptName { keyword: declaration.keyword, declaration: Some(at) };
             declared.insert(names.text(bound.name).to_owned(), entry);
         }
         Self { path, text, script, names, declared, order, spans, shapes: RefCell::default() }
@@ -78,26 +78,26 @@ impl Unit {
 
 /// Expressions with the names they are written in.
 #[derive(Clone, Copy)]
-pub(crate) struct Code<'c> {
+pub(crate) struct NamedExpressions<'c> {
     /// The script whose names they see.
     pub unit: usize,
     pub names: &'c Names,
     pub nodes: &'c [Node],
 }
 
-impl Code<'_> {
+impl NamedExpressions<'_> {
     pub fn text(&self, name: Name) -> &str {
         self.names.text(name)
     }
 }
 
 /// Names of `for`, `let … in` and parameters, the innermost last.
-pub(crate) type Locals = Vec<(String, Shape)>;
+pub(crate) type Locals = Vec<(String, KnownType)>;
 
 /// All scripts at hand.
 pub(crate) struct Scripts<'o> {
     units: RefCell<Vec<Rc<Unit>>>,
-    open: Open<'o>,
+    open: OpenFile<'o>,
     known: &'o Known,
     /// How deep the search for a type is.
     pub depth: Cell<u32>,
@@ -105,7 +105,7 @@ pub(crate) struct Scripts<'o> {
 
 impl<'o> Scripts<'o> {
     /// The main script is the first.
-    pub fn new(text: &str, path: &str, open: Open<'o>, known: &'o Known) -> Self {
+    pub fn new(text: &str, path: &str, open: OpenFile<'o>, known: &'o Known) -> Self {
         let main = Rc::new(Unit::new(path.to_owned(), text.to_owned()));
         Self { units: RefCell::new(vec![main]), open, known, depth: Cell::new(0) }
     }
@@ -116,7 +116,7 @@ impl<'o> Scripts<'o> {
     }
 
     /// What the last run showed of a name of the main script.
-    pub fn last_run(&self, unit: usize, name: &str) -> Shape {
+    pub fn last_run(&self, unit: usize, name: &str) -> KnownType {
         self.known.get(name).filter(|_| unit == 0).cloned().unwrap_or_default()
     }
 
@@ -132,11 +132,11 @@ impl<'o> Scripts<'o> {
     }
 
     /// An expression written somewhere in a script.
-    pub fn shape_of_text(&self, unit: usize, text: &str, locals: &mut Locals) -> Shape {
+    pub fn shape_of_text(&self, unit: usize, text: &str, locals: &mut Locals) -> KnownType {
         let mut names = Names::default();
         let (script, _) = parse(&format!("let x = {text}"), FileId(0), &mut names);
-        let Some(declaration) = script.declarations.first() else { return Shape::Unknown };
-        let DeclarationKind::Value { value, .. } = &declaration.kind else { return Shape::Unknown };
-        self.shape(Code { unit, names: &names, nodes: &declaration.nodes }, *value, locals)
+        let Some(declaration) = script.declarations.first() else { return KnownType::Unknown };
+        let DeclarationKind::Value { value, .. } = &declaration.kind else { return KnownType::Unknown };
+        self.shape(NamedExpressions { unit, names: &names, nodes: &declaration.nodes }, *value, locals)
     }
 }

@@ -11,7 +11,7 @@ const LOOKED_AT: (usize, u32) = (8, 4);
 
 /// The type of a value as far as it is known.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub enum Shape {
+pub enum KnownType {
     /// Nothing is known.
     #[default]
     Unknown,
@@ -27,7 +27,7 @@ pub enum Shape {
     Module(usize),
 }
 
-impl Shape {
+impl KnownType {
     /// A list of these.
     pub fn list(of: Self) -> Self {
         Self::List(Arc::new(of))
@@ -177,7 +177,7 @@ impl Shape {
 }
 
 /// Whether a record has the keys of an imported part.
-fn is_part(keys: &[(String, Shape)]) -> bool {
+fn is_part(keys: &[(String, KnownType)]) -> bool {
     ["points", "curves", "surfaces"].iter().all(|wanted| keys.iter().any(|(key, _)| key == wanted))
 }
 
@@ -191,10 +191,10 @@ mod tests {
 
     #[test]
     fn what_fits_is_known() {
-        let (curve, length) = (Shape::Is(Ty::Curve), Ty::Quantity(Dim::LENGTH));
-        assert!(curve.fits(Ty::Rest(&Ty::Curve)) && Shape::list(Shape::list(curve.clone())).fits(Ty::List(&Ty::Curve)));
-        assert!(!curve.fits(Ty::Surface) && !Shape::list(curve.clone()).fits(Ty::Curve) && curve.fits(Ty::Axis));
-        assert!(Shape::Is(Ty::Node).fits(Ty::Point) && !Shape::Is(Ty::Point).has_fields_of(Ty::Node));
-        assert!(Shape::of(length).fits(Ty::Measure) && !Shape::Is(Ty::Number).fits(length) && Shape::Unknown.fits(length));
+        let (curve, length) = (KnownType::Is(Ty::Curve), Ty::Quantity(Dim::LENGTH));
+        assert!(curve.fits(Ty::Rest(&Ty::Curve)) && KnownType::list(KnownType::list(curve.clone())).fits(Ty::List(&Ty::Curve)));
+        assert!(!curve.fits(Ty::Surface) && !KnownType::list(curve.clone()).fits(Ty::Curve) && curve.fits(Ty::Axis));
+        assert!(KnownType::Is(Ty::Node).fits(Ty::Point) && !KnownType::Is(Ty::Point).has_fields_of(Ty::Node));
+        assert!(KnownType::of(length).fits(Ty::Measure) && !KnownType::Is(Ty::Number).fits(length) && KnownType::Unknown.fits(length));
     }
 }

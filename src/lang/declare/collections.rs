@@ -31,7 +31,7 @@ use crate::lang::values::value::{MeshValue, ShellValue, Value};
 pub(crate) struct Contents<'a> {
     /// The things behind `of`.
     pub things: &'a [ExprId],
-    pub settings: &'a [ast::Setting],
+    pub settings: &'a [ast::SettingEntry],
     /// `on`, `near` and `in` of a mesh.
     pub clauses: &'a [MeshClause],
 }

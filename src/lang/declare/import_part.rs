@@ -7,16 +7,16 @@ use std::sync::Arc;
 use crate::base::bbox::Box3;
 use crate::base::tolerance::Tolerance;
 use crate::io::cad::healing::{Repair, Rule};
-use crate::io::cad::part::{Group, Options, Part, Unusable};
+use crate::io::cad::part::{Group, Part, ReadOptions, Unusable};
 use crate::io::files::fault::{ContentFault, Malformed};
 use crate::io::{iges, step};
-use crate::lang::declare::imports::File;
+use crate::lang::declare::imports::ImportedFile;
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
 use crate::lang::eval::stages::each_member;
 use crate::lang::syntax::ast::Keyword;
-use crate::lang::values::origins::{NO_MEMBER, Place};
-use crate::lang::values::part::{Body, PartFile, PartValue, Said};
+use crate::lang::values::origins::{NO_MEMBER, OriginEntry};
+use crate::lang::values::part::{Body, PartFile, PartValue, SurfaceProperties};
 use crate::lang::values::units;
 use crate::lang::values::units::MILLIMETRE;
 use crate::lang::values::value::{ModuleId, Record, Value};
@@ -25,20 +25,20 @@ use crate::surface::Surface;
 
 impl Cx<'_> {
     /// An IGES file.
-    pub(crate) fn iges(&mut self, file: &File, bytes: &[u8]) -> Result<Value, Halt> {
+    pub(crate) fn iges(&mut self, file: &ImportedFile, bytes: &[u8]) -> Result<Value, Halt> {
         let opened = iges::open(bytes, &self.cad_options(file)).map_err(|at| file.malformed(at))?;
         self.cad(file, opened.reach(), |tolerance| opened.part(tolerance))
     }
 
     /// A STEP file.
-    pub(crate) fn step_file(&mut self, file: &File, bytes: &[u8]) -> Result<Value, Halt> {
+    pub(crate) fn step_file(&mut self, file: &ImportedFile, bytes: &[u8]) -> Result<Value, Halt> {
         let opened = step::open(bytes, &self.cad_options(file)).map_err(|at| file.malformed(at))?;
         self.cad(file, opened.reach(), |tolerance| opened.part(tolerance))
     }
 
-    fn cad_options(&self, file: &File) -> Options {
+    fn cad_options(&self, file: &ImportedFile) -> ReadOptions {
         let millimetres = |unit| units::convert(1.0, unit, MILLIMETRE, 1);
-        Options {
+        ReadOptions {
             model: millimetres(self.program.unit),
             unit: self.program.unit.name,
             file: file.unit.map(millimetres),
@@ -47,7 +47,7 @@ impl Cx<'_> {
     }
 
     /// Lists in file order, then everything once more by its name in the file.
-    fn cad(&mut self, file: &File, reach: Box3, make: impl FnOnce(Tolerance) -> Part) -> Result<Value, Halt> {
+    fn cad(&mut self, file: &ImportedFile, reach: Box3, make: impl FnOnce(Tolerance) -> Part) -> Result<Value, Halt> {
         if !reach.is_empty() {
             self.seen([reach.min, reach.max]);
         }
@@ -72,8 +72,8 @@ impl Cx<'_> {
         Ok(value)
     }
 
-    fn part(&mut self, file: &File, part: &Part, notes: Vec<Malformed>) -> Value {
-        let faces = Faces::of(self, file, part, notes);
+    fn part(&mut self, file: &ImportedFile, part: &Part, notes: Vec<Malformed>) -> Value {
+        let faces = NumberedFaces::of(self, file, part, notes);
         let row = |points: &[glam::DVec3]| match points {
             [one] => Value::point(*one),
             row => Value::list(row.iter().map(|p| Value::point(*p)).collect()),
@@ -126,7 +126,7 @@ impl Cx<'_> {
 }
 
 /// The surfaces made of a part, numbered one after the other.
-struct Faces {
+struct NumberedFaces {
     /// The script's name for the part.
     name: String,
     file: Arc<PartFile>,
@@ -140,8 +140,8 @@ struct Faces {
     unusable: Vec<(Option<usize>, Unusable)>,
 }
 
-impl Faces {
-    fn of(cx: &mut Cx, file: &File, part: &Part, notes: Vec<Malformed>) -> Self {
+impl NumberedFaces {
+    fn of(cx: &mut Cx, file: &ImportedFile, part: &Part, notes: Vec<Malformed>) -> Self {
         let (mut all, mut places, mut said) = (Vec::new(), Vec::new(), Vec::new());
         let mut colors: Vec<Option<&str>> = vec![None; part.surfaces.len()];
         for (group, _) in &part.colors {
@@ -157,10 +157,10 @@ impl Faces {
             let first = all.len();
             for surface in built {
                 let member = [all.len() as u32, NO_MEMBER];
-                let origin = place.map_or(file.origin, |place| cx.program.origins.add(Place { member, ..place }));
+                let origin = place.map_or(file.origin, |place| cx.program.origins.add(OriginEntry { member, ..place }));
                 all.push(surface.with_origin(origin));
                 let color = color.zip(item.color).map(|(name, rgb)| (name.into(), rgb));
-                said.push(Said {
+                said.push(SurfaceProperties {
                     name: item.name.as_str().into(),
                     own: item.own.as_deref().map(Arc::from),
                     layers: layers.clone(),
@@ -182,7 +182,7 @@ impl Faces {
         }
         let file = PartFile {
             path: file.path.into(),
-            origin: place.map_or(file.origin, |place| cx.program.origins.add(Place { member: [NO_MEMBER; 2], expr: None, ..place })),
+            origin: place.map_or(file.origin, |place| cx.program.origins.add(OriginEntry { member: [NO_MEMBER; 2], expr: None, ..place })),
             module: cx.module(),
             said,
             bodies,

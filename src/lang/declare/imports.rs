@@ -32,14 +32,14 @@ const ENDINGS: &[&str] = &["csv", "dat", "txt", "json", "obj", "stl", "igs", "ig
 const TABLES: &[&str] = &["csv", "dat", "txt"];
 
 /// One file being imported.
-pub(crate) struct File<'f> {
+pub(crate) struct ImportedFile<'f> {
     pub path: &'f str,
     pub origin: Origin,
     pub unit: Option<LengthUnit>,
     header: Option<bool>,
 }
 
-impl File<'_> {
+impl ImportedFile<'_> {
     pub fn malformed(&self, at: Malformed) -> Halt {
         ContentFault::Malformed { of: self.origin, path: self.path.to_owned(), at }.into()
     }
@@ -61,7 +61,7 @@ impl Cx<'_> {
         let from = self.machine.at(code.module).path.clone();
         let resolved = self.files.resolve(&from, &written).map_err(|e| file_fault(e, &written, origin))?;
         let bytes = self.files.read(&resolved, limits::DATA_BYTES).map_err(|e| file_fault(e, &written, origin))?;
-        let file = File { path: &written, origin, unit, header };
+        let file = ImportedFile { path: &written, origin, unit, header };
         match ending.as_str() {
             "json" => {
                 let json = io::tables::json::read(&bytes).map_err(|at| file.malformed(at))?;
@@ -112,7 +112,7 @@ impl Cx<'_> {
         gather.done().map(|()| (header, unit))
     }
 
-    pub(crate) fn repaired(&mut self, file: &File, repairs: Vec<Malformed>) {
+    pub(crate) fn repaired(&mut self, file: &ImportedFile, repairs: Vec<Malformed>) {
         let said = if self.sink.whole { repairs.len() } else { REPAIRS_SAID };
         let more = repairs.len().saturating_sub(said);
         for mut at in repairs.into_iter().take(said) {
@@ -141,7 +141,7 @@ impl Cx<'_> {
         }
     }
 
-    fn obj(&mut self, file: &File, mut obj: Obj) -> Value {
+    fn obj(&mut self, file: &ImportedFile, mut obj: Obj) -> Value {
         let scale = file.scale(self.program.unit);
         let (mesh, mut repairs) = obj.mesh(stem(file.path));
         let mut skipped = std::mem::take(&mut obj.skipped);
@@ -171,7 +171,7 @@ impl Cx<'_> {
         ])
     }
 
-    fn imported_mesh(&mut self, file: &File, mut mesh: Mesh) -> Value {
+    fn imported_mesh(&mut self, file: &ImportedFile, mut mesh: Mesh) -> Value {
         let scale = file.scale(self.program.unit);
         if scale != 1.0 {
             mesh.nodes.iter_mut().for_each(|p| *p *= scale);
@@ -180,7 +180,7 @@ impl Cx<'_> {
         Value::Mesh(Arc::new(MeshValue::Data(Arc::new(mesh), file.origin)))
     }
 
-    fn table_value(&mut self, file: &File, table: io::Table) -> Result<Value, Halt> {
+    fn table_value(&mut self, file: &ImportedFile, table: io::Table) -> Result<Value, Halt> {
         self.steps(table.rows.iter().map(Vec::len).sum())?;
         let model = self.program.unit;
         let number = |x: f64| match file.unit {

@@ -10,7 +10,7 @@ use crate::lang::eval::room::LIST_COST;
 use crate::lang::eval::std;
 use crate::lang::syntax::ast::{Declaration, DeclarationKind, ExprId, FnParam, For, Keyword, TypeName};
 use crate::lang::syntax::scopes::bound;
-use crate::lang::values::origins::{NO_MEMBER, Place};
+use crate::lang::values::origins::{NO_MEMBER, OriginEntry};
 use crate::lang::values::types::{TYPE_NAMES, Ty};
 use crate::lang::values::value::{ModuleId, Value};
 use crate::lang::words::names::Name;
@@ -108,12 +108,18 @@ impl Cx<'_> {
 
     /// The origin that stands for a declaration or a member of it.
     pub(crate) fn own_origin(&mut self, code: Code<'_>, member: [u32; 2]) -> Origin {
-        self.program.origins.add(Place { module: code.module, declaration: code.declaration, member, expr: None, caller: Origin::NONE })
+        self.program.origins.add(OriginEntry {
+            module: code.module,
+            declaration: code.declaration,
+            member,
+            expr: None,
+            caller: Origin::NONE,
+        })
     }
 
     /// Whether an entity was made by the right side itself, so that its origin is the declaration's already.
     fn is_own(&self, origin: Origin, code: Code<'_>, value: ExprId, member: [u32; 2]) -> bool {
-        let own = Place { module: code.module, declaration: code.declaration, member, expr: Some(value), caller: Origin::NONE };
+        let own = OriginEntry { module: code.module, declaration: code.declaration, member, expr: Some(value), caller: Origin::NONE };
         self.program.origins.place(origin) == Some(own)
     }
 

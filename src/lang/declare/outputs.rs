@@ -75,7 +75,7 @@ impl Cx<'_> {
         member: [u32; 2],
         things: &[ExprId],
         to: Option<ExprId>,
-        settings: &[ast::Setting],
+        settings: &[ast::SettingEntry],
     ) -> Result<ExportSpec, Halt> {
         let mut gather = Gather::default();
         let things = match self.things(code, things, Keyword::Export) {
@@ -106,7 +106,7 @@ impl Cx<'_> {
     }
 
     /// The words of `element:`; those of a list written out have their own places.
-    fn elements(&mut self, code: Code<'_>, written: &[ast::Setting], said: &Value, whole: Origin) -> Vec<(Arc<str>, Origin)> {
+    fn elements(&mut self, code: Code<'_>, written: &[ast::SettingEntry], said: &Value, whole: Origin) -> Vec<(Arc<str>, Origin)> {
         let setting = written.iter().find(|setting| self.program.names.text(setting.key) == "element");
         let items: &[ExprId] = match setting.map(|setting| code.expr(setting.value)) {
             Some(Expr::List(items)) => items,

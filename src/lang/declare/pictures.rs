@@ -46,7 +46,7 @@ impl Cx<'_> {
         member: [u32; 2],
         things: &[ExprId],
         to: Option<ExprId>,
-        settings: &[ast::Setting],
+        settings: &[ast::SettingEntry],
     ) -> Result<PictureSpec, Halt> {
         let mut gather = Gather::default();
         let named: Vec<String> = things.iter().map(|t| self.source(code, *t).split_whitespace().collect::<Vec<_>>().join(" ")).collect();
@@ -98,7 +98,7 @@ impl Cx<'_> {
     }
 
     /// Where the eye is; E306 for a direction without length or an up along it.
-    fn view(&mut self, code: Code<'_>, settings: &[ast::Setting], resolved: &[Resolved]) -> Result<View, Halt> {
+    fn view(&mut self, code: Code<'_>, settings: &[ast::SettingEntry], resolved: &[Resolved]) -> Result<View, Halt> {
         let place = |cx: &Self, key: &str| settings.iter().find(|s| cx.program.names.text(s.key) == key).map(|s| s.value);
         let mut view = match find(resolved, "view").map(|r| &r.value) {
             Some(Value::Word(word)) => View::named(word),
@@ -126,7 +126,7 @@ impl Cx<'_> {
     }
 
     /// E306 for more pixels than a picture may have.
-    fn page(&mut self, code: Code<'_>, settings: &[ast::Setting], (width, height): (u32, u32)) -> Result<(), Halt> {
+    fn page(&mut self, code: Code<'_>, settings: &[ast::SettingEntry], (width, height): (u32, u32)) -> Result<(), Halt> {
         let pixels = u64::from(width) * u64::from(height);
         let last = settings.iter().rfind(|s| matches!(self.program.names.text(s.key), "width" | "height")).map(|s| s.value);
         match last {

@@ -71,7 +71,7 @@ impl Cx<'_> {
         code: Code<'_>,
         word: &str,
         table: &'static [Setting],
-        settings: &[ast::Setting],
+        settings: &[ast::SettingEntry],
     ) -> Result<Vec<Resolved>, Halt> {
         let (mut out, mut gather) = (Vec::<Resolved>::with_capacity(settings.len()), Gather::default());
         for setting in settings {

@@ -279,7 +279,7 @@ pub struct Fix {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::fault::{Plain, ValueFault};
+    use crate::base::fault::{PlainWords, ValueFault};
 
     #[test]
     fn columns_count_characters() {
@@ -295,9 +295,9 @@ mod tests {
     fn a_fault_finds_its_places() {
         let fault: Fault = ValueFault::OutsideRange { argument: "rho", found: "2".into(), range: "between 0 and 1".into() }.into();
         let argument = |subject| (subject == Subject::Argument("rho")).then_some((FileId(0), Span { start: 3, end: 4 }));
-        let found = Diagnostic::from_fault(&fault, argument, &Plain);
+        let found = Diagnostic::from_fault(&fault, argument, &PlainWords);
         assert_eq!((found.code.0, found.labels[0].span.start, found.message.as_str()), ("E306", 3, "`rho` must be between 0 and 1, got 2"));
         let call = |subject| (subject == Subject::Call).then_some((FileId(0), Span { start: 7, end: 9 }));
-        assert_eq!(Diagnostic::from_fault(&fault, call, &Plain).labels[0].span.start, 7);
+        assert_eq!(Diagnostic::from_fault(&fault, call, &PlainWords).labels[0].span.start, 7);
     }
 }

@@ -6,7 +6,7 @@
 use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanContents};
 
 use crate::lang::diag::diagnostic::{Label, SourceFile};
-use crate::lang::diag::paint::{Paint, shortened};
+use crate::lang::diag::paint::{Colors, shortened};
 
 /// Characters of a line shown before and behind its labels when it is long.
 const WINDOW: usize = 100;
@@ -14,7 +14,7 @@ const WINDOW: usize = 100;
 const WHOLE_LINE: usize = 500;
 
 /// The labelled lines of one file in a frame.
-pub(super) fn frame(text: &mut String, source: &SourceFile, labels: &[&Label], number: usize, paint: &Paint) {
+pub(super) fn frame(text: &mut String, source: &SourceFile, labels: &[&Label], number: usize, paint: &Colors) {
     let rows = rows(source, labels);
     let Some(first) = labels.first() else { return };
     let place = source.place(first.span.start);
@@ -56,11 +56,11 @@ impl Row {
 }
 
 /// From and to within a line, with the words.
-type Mark = (usize, usize, String);
+type LabelSpan = (usize, usize, String);
 
 /// The lines that carry labels, in order. A label over several lines marks what it covers of its first one.
 fn rows(source: &SourceFile, labels: &[&Label]) -> Vec<Row> {
-    let mut by_line: Vec<(usize, Vec<Mark>)> = Vec::new();
+    let mut by_line: Vec<(usize, Vec<LabelSpan>)> = Vec::new();
     for label in labels {
         let start = source.boundary(label.span.start) as usize;
         let index = source.place(label.span.start).line - 1;
@@ -108,11 +108,11 @@ fn cut(row: &mut Row) {
 
 /// A line and the marks under it. Marks that cover each other stand under one another, the narrowest first.
 fn drawn_in_tiers(row: &Row) -> Vec<String> {
-    let mut tiers: Vec<Vec<Mark>> = Vec::new();
-    let mut marks: Vec<&Mark> = row.labels.iter().collect();
+    let mut tiers: Vec<Vec<LabelSpan>> = Vec::new();
+    let mut marks: Vec<&LabelSpan> = row.labels.iter().collect();
     marks.sort_by_key(|(from, to, _)| (to - from, *from));
     for mark in marks {
-        let free = |tier: &Vec<Mark>| tier.iter().all(|other| mark.1 <= other.0 || other.1 <= mark.0);
+        let free = |tier: &Vec<LabelSpan>| tier.iter().all(|other| mark.1 <= other.0 || other.1 <= mark.0);
         // Never above a narrower one that it covers.
         let first = tiers.iter().rposition(|tier| !free(tier)).map_or(0, |k| k + 1);
         match tiers.get_mut(first) {

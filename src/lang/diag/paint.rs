@@ -17,12 +17,12 @@ pub(super) fn shortened(words: &str) -> std::borrow::Cow<'_, str> {
 }
 
 /// Colours, or none.
-pub(super) struct Paint {
+pub(super) struct Colors {
     pub(super) on: bool,
     pub(super) severity: Severity,
 }
 
-impl Paint {
+impl Colors {
     fn with(&self, code: &str, text: &str) -> String {
         if self.on { format!("\x1b[{code}m{text}\x1b[0m") } else { text.to_owned() }
     }

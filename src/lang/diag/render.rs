@@ -15,7 +15,7 @@ use crate::base::fault::Severity;
 use crate::base::limits::REPORTS_SHOWN;
 use crate::lang::diag::diagnostic::{Diagnostic, FileId, Label, Sources};
 use crate::lang::diag::frame::frame;
-use crate::lang::diag::paint::{Paint, shortened};
+use crate::lang::diag::paint::{Colors, shortened};
 
 /// Places of equal reports that are listed.
 const PLACES_SHOWN: usize = 8;
@@ -64,7 +64,7 @@ fn counted(found: &[&Diagnostic]) -> String {
 }
 
 fn render_one(diagnostic: &Diagnostic, same: &[&Diagnostic], sources: &Sources, colours: bool) -> String {
-    let paint = Paint { on: colours, severity: diagnostic.severity() };
+    let paint = Colors { on: colours, severity: diagnostic.severity() };
     let sign = match diagnostic.severity() {
         Severity::Error => '×',
         Severity::Warning => '⚠',

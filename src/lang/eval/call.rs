@@ -10,7 +10,7 @@ use crate::lang::eval::bind::{Signature, call_name, positional};
 use crate::lang::eval::coerce::accepts;
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
-use crate::lang::eval::machine::{Code, Frame, Gather, Site, Word};
+use crate::lang::eval::machine::{CallFrame, Code, Gather, Site, Word};
 use crate::lang::eval::module::State;
 use crate::lang::eval::std;
 use crate::lang::eval::std::Builtin;
@@ -225,7 +225,7 @@ impl Cx<'_> {
         let site = self.machine.site;
         let (base, room) = (self.machine.locals.len(), self.machine.room);
         let old_base = ::std::mem::replace(&mut self.machine.base, base);
-        self.machine.calls.push(Frame { name: bound.name, site: Site { expr: id, ..site }, origin: Origin::NONE });
+        self.machine.calls.push(CallFrame { name: bound.name, site: Site { expr: id, ..site }, origin: Origin::NONE });
         self.machine.site = Site { module, declaration, member: site.member, expr: *body };
         let result = work::uncharged(|| self.run_fn(callee, params, given, *body)).and_then(|value| match returns {
             Some(ty) => {

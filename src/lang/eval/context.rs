@@ -20,7 +20,7 @@ use crate::lang::syntax::ast::Keyword;
 use crate::lang::values::origins::Origins;
 use crate::lang::values::plans::MeshSpec;
 use crate::lang::values::units::{LengthUnit, MILLIMETRE};
-use crate::lang::values::value::{Home, MeshValue, ModuleId, Record, ShellValue, Value};
+use crate::lang::values::value::{EntityHome, MeshValue, ModuleId, Record, ShellValue, Value};
 use crate::lang::words::names::Names;
 use crate::mesh::Mesh;
 use crate::model::Model;
@@ -138,19 +138,19 @@ impl<'w> Cx<'w> {
     }
 
     /// The surface model of a script, whose surfaces are evaluated first, or the one that things are numbered in.
-    pub fn model(&mut self, of: impl Into<Home>) -> Result<Arc<Model>, Halt> {
+    pub fn model(&mut self, of: impl Into<EntityHome>) -> Result<Arc<Model>, Halt> {
         match of.into() {
-            Home { annex: Some(model), .. } => Ok(model),
-            Home { module, annex: None, .. } => crate::lang::eval::stages::model(self, module),
+            EntityHome { annex: Some(model), .. } => Ok(model),
+            EntityHome { module, annex: None, .. } => crate::lang::eval::stages::model(self, module),
         }
     }
 
     /// The network that the model stands on in which things are numbered.
-    pub fn network_of(&mut self, home: &Home) -> Result<Arc<Network>, Halt> {
+    pub fn network_of(&mut self, home: &EntityHome) -> Result<Arc<Network>, Halt> {
         match home {
-            Home { alone: true, .. } => Ok(Arc::default()),
-            Home { annex: Some(_), .. } => Ok(self.ground(home.module)?.1),
-            Home { annex: None, .. } => self.network(home.module),
+            EntityHome { alone: true, .. } => Ok(Arc::default()),
+            EntityHome { annex: Some(_), .. } => Ok(self.ground(home.module)?.1),
+            EntityHome { annex: None, .. } => self.network(home.module),
         }
     }
 

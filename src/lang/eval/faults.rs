@@ -11,7 +11,7 @@ use crate::lang::eval::context::Cx;
 use crate::lang::eval::machine::Code;
 use crate::lang::syntax::ast::{DeclarationKind, ExprId};
 use crate::lang::syntax::scopes::bound;
-use crate::lang::values::origins::{NO_MEMBER, Place};
+use crate::lang::values::origins::{NO_MEMBER, OriginEntry};
 use crate::lang::values::value::ModuleId;
 
 /// Longest source text that stands for the name of a nameless entity.
@@ -67,7 +67,7 @@ pub(crate) fn member_name(name: &str, member: [u32; 2]) -> String {
 
 impl Cx<'_> {
     /// The call of the declaration's own expression that led to a place.
-    pub(crate) fn outermost(&self, mut place: Place) -> Place {
+    pub(crate) fn outermost(&self, mut place: OriginEntry) -> OriginEntry {
         while let Some(caller) = self.program.origins.place(place.caller) {
             place = caller;
         }

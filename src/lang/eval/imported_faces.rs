@@ -6,22 +6,22 @@ use std::sync::Arc;
 use crate::base::origin::Origin;
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::module::State;
-use crate::lang::values::origins::{NO_MEMBER, Place};
-use crate::lang::values::part::{PartFile, PartValue, Said};
+use crate::lang::values::origins::{NO_MEMBER, OriginEntry};
+use crate::lang::values::part::{PartFile, PartValue, SurfaceProperties};
 use crate::lang::values::value::{ShellValue, Value};
 use crate::surface::Surface;
 
 impl Cx<'_> {
     /// The part that a face was imported with, and its number there.
     fn part_of(&self, face: &Surface) -> Option<(&Arc<PartValue>, usize)> {
-        let Place { module, declaration, member, .. } = self.program.origins.place(face.origin())?;
+        let OriginEntry { module, declaration, member, .. } = self.program.origins.place(face.origin())?;
         let [face, NO_MEMBER] = member else { return None };
         let State::Done(value) = self.machine.modules.get(module.index())?.states.get(declaration as usize)? else { return None };
         value.part().map(|part| (part, face as usize))
     }
 
     /// What a file says of a face that was imported.
-    pub fn said_of(&self, face: &Surface) -> Option<&Said> {
+    pub fn said_of(&self, face: &Surface) -> Option<&SurfaceProperties> {
         self.part_of(face).and_then(|(part, face)| part.file.said.get(face))
     }
 

@@ -23,7 +23,7 @@ use crate::network::fault::{ChainFault, CurveEnd, EndFault};
 const SHOWN: usize = 120;
 
 /// A declared curve, or a run of one, from one end of a gap to the other.
-struct Filler {
+struct GapFiller {
     /// As it is typed, in the direction from the first end to the second.
     typed: String,
     /// The same whatever its direction.
@@ -89,7 +89,7 @@ impl Cx<'_> {
     }
 
     /// The first declared curve that runs from one end of a gap to the other, else the first that passes both.
-    fn filler(&self, module: ModuleId, (a, b): (&CurveEnd, &CurveEnd), tolerance: &Tolerance) -> Option<Filler> {
+    fn filler(&self, module: ModuleId, (a, b): (&CurveEnd, &CurveEnd), tolerance: &Tolerance) -> Option<GapFiller> {
         let given = [self.name(a.of), self.name(b.of)];
         let mut curves: Vec<(String, Chain)> = Vec::new();
         self.each_declared(module, &mut |name, value| {
@@ -104,13 +104,13 @@ impl Cx<'_> {
             let forwards = same(c.start(), a.at) && same(c.end(), b.at);
             let backwards = same(c.start(), b.at) && same(c.end(), a.at);
             let typed = if forwards { name.clone() } else { format!("-{name}") };
-            (forwards || backwards).then(|| Filler { typed, name: name.clone(), run: None })
+            (forwards || backwards).then(|| GapFiller { typed, name: name.clone(), run: None })
         });
         whole.or_else(|| {
             let passes = |c: &Chain, p: DVec3| c.closest(p).2 <= tolerance.point;
             let (name, _) = curves.iter().find(|(_, c)| passes(c, a.at) && passes(c, b.at))?;
             let (from, to) = (self.place_name(module, a, tolerance)?, self.place_name(module, b, tolerance)?);
-            Some(Filler { typed: format!("{name}[{from}..{to}]"), name: name.clone(), run: Some((from, to)) })
+            Some(GapFiller { typed: format!("{name}[{from}..{to}]"), name: name.clone(), run: Some((from, to)) })
         })
     }
 

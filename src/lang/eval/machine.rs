@@ -16,7 +16,7 @@ use crate::lang::eval::module::Module;
 use crate::lang::eval::room::MemoryBudget;
 use crate::lang::eval::std::Builtin;
 use crate::lang::syntax::ast::{Expr, ExprId, Node};
-use crate::lang::values::origins::{NO_MEMBER, Origins, Place};
+use crate::lang::values::origins::{NO_MEMBER, OriginEntry, Origins};
 use crate::lang::values::plans::MeshSpec;
 use crate::lang::values::value::{ModuleId, Value};
 use crate::lang::words::names::Name;
@@ -65,7 +65,7 @@ pub(crate) struct Site {
 
 /// A call of a script's function that is being run.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Frame {
+pub(crate) struct CallFrame {
     /// The function.
     pub name: Name,
     /// Where it was called; its `expr` is the call.
@@ -88,7 +88,7 @@ pub struct Machine {
     pub(crate) site: Site,
     pub(crate) locals: Vec<(Name, Value)>,
     pub(crate) base: usize,
-    pub(crate) calls: Vec<Frame>,
+    pub(crate) calls: Vec<CallFrame>,
     pub(crate) running: Vec<(ModuleId, u32)>,
     pub(crate) words: Vec<Word>,
     pub(crate) steps: u64,
@@ -144,8 +144,8 @@ impl Default for Machine {
     }
 }
 
-fn place(site: Site, caller: Origin) -> Place {
-    Place { module: site.module, declaration: site.declaration, member: site.member, expr: Some(site.expr), caller }
+fn place(site: Site, caller: Origin) -> OriginEntry {
+    OriginEntry { module: site.module, declaration: site.declaration, member: site.member, expr: Some(site.expr), caller }
 }
 
 impl Machine {

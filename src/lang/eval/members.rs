@@ -17,7 +17,7 @@ use crate::mesh::Group;
 pub const UNIT_COLUMN: &str = "unit";
 
 /// A member and its value.
-type Member = (String, Value);
+type NamedValue = (String, Value);
 
 impl Cx<'_> {
     /// The members of an entity a row each, or of a list with entities those of each a row; `None` for other values.
@@ -28,7 +28,7 @@ impl Cx<'_> {
                 let mut members = self.members_of(one)?;
                 members.extend(self.sets_of(one)?);
                 members.extend(self.net_of(one));
-                let row = |(member, value): Member| {
+                let row = |(member, value): NamedValue| {
                     let (value, unit) = self.apart(value);
                     vec![Value::text(&member), value, Value::text(&unit)]
                 };
@@ -77,7 +77,7 @@ impl Cx<'_> {
 
     /// What an entity is and its members: lists by how many they hold, records by their own members, `none` for what this one does
     /// not have (the volume of an open shell).
-    fn members_of(&mut self, of: &Value) -> Result<Vec<Member>, Halt> {
+    fn members_of(&mut self, of: &Value) -> Result<Vec<NamedValue>, Halt> {
         let mut members = what(of);
         let (mut any, mut first) = (!members.is_empty(), None);
         for field in std::fields().filter(|f| f.params.first().is_some_and(|p| accepts(p.ty, of))) {
@@ -100,7 +100,7 @@ impl Cx<'_> {
     }
 
     /// The sets of a mesh by their counts.
-    fn sets_of(&mut self, of: &Value) -> Result<Vec<Member>, Halt> {
+    fn sets_of(&mut self, of: &Value) -> Result<Vec<NamedValue>, Halt> {
         let Value::Mesh(mesh) = of else { return Ok(Vec::new()) };
         let mesh = self.mesh(mesh)?;
         let counts = |g: &Group| {
@@ -111,7 +111,7 @@ impl Cx<'_> {
     }
 
     /// The curves that a surface was made through: how far it lies from each, and how much stations were scaled.
-    fn net_of(&mut self, of: &Value) -> Vec<Member> {
+    fn net_of(&mut self, of: &Value) -> Vec<NamedValue> {
         let Value::Surface(surface) = of else { return Vec::new() };
         let (mut counts, mut rows) = ([0usize; 2], Vec::new());
         let word = if surface.families().1.is_empty() { "section" } else { "guide" };
@@ -128,7 +128,7 @@ impl Cx<'_> {
         rows
     }
 
-    fn push_member(&self, name: &str, value: Value, members: &mut Vec<Member>) {
+    fn push_member(&self, name: &str, value: Value, members: &mut Vec<NamedValue>) {
         match value {
             Value::Record(record) => {
                 for (key, value) in record.keys.iter().zip(&record.values) {
@@ -191,7 +191,7 @@ fn is_place(value: &Value) -> bool {
 }
 
 /// What no member says: the constructor of curves and surfaces, the flow found, and where a plane lies.
-fn what(value: &Value) -> Vec<Member> {
+fn what(value: &Value) -> Vec<NamedValue> {
     let text = |name: &str, text: &str| (name.to_owned(), Value::text(text));
     match value {
         Value::Curve(chain) => vec![text("kind", chain.whole_curve().map_or("chain", |curve| curve.kind().name()))],

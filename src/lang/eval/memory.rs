@@ -31,7 +31,7 @@ pub struct Memory {
     pub(crate) names: Names,
     pub(crate) origins: Origins,
     homes: BTreeMap<Digest, Home>,
-    entries: BTreeMap<Digest, Entry>,
+    entries: BTreeMap<Digest, MemoryEntry>,
     /// Names of the scripts in order of their numbers: values may hold such numbers.
     modules: Vec<String>,
     run: u64,
@@ -40,7 +40,7 @@ pub struct Memory {
 
 /// One declaration as it was evaluated.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Entry {
+pub(crate) struct MemoryEntry {
     /// It asked for the tolerance before that was known, having added this to the box.
     pub suspended: Option<Box3>,
     /// Its value.
@@ -133,7 +133,7 @@ impl Memory {
     }
 
     /// The entry of a key, marked as used.
-    pub(crate) fn find(&mut self, key: Digest) -> Option<&Entry> {
+    pub(crate) fn find(&mut self, key: Digest) -> Option<&MemoryEntry> {
         let entry = self.entries.get_mut(&key)?;
         entry.used = self.run;
         Some(entry)

@@ -15,7 +15,7 @@ use crate::lang::eval::module::State;
 use crate::lang::eval::stages;
 use crate::lang::syntax::ast::Keyword;
 use crate::lang::syntax::scopes::bound;
-use crate::lang::values::value::{Home, ModuleId, ShellValue, Value};
+use crate::lang::values::value::{EntityHome, ModuleId, ShellValue, Value};
 use crate::model::topology::Named;
 use crate::model::{Model, SharedEdge, Shell, ShellRequest, SurfaceId};
 use crate::network::{Chain, Network};
@@ -41,7 +41,7 @@ impl Scene {
     /// The scene of `surfaces`, and where its patches, edges and vertices are numbered: the script's own where that declares them all,
     /// else (and where some of it failed) one of these surfaces or of what is sound, on the script's network. The same surfaces are at home in one place. What is itself a curve or
     /// surface of the script is made from them alone, on no network: how a surface is bounded does not depend on the others.
-    pub fn at_home(cx: &mut Cx, module: ModuleId, surfaces: &[Surface]) -> Result<(Self, Home), Halt> {
+    pub fn at_home(cx: &mut Cx, module: ModuleId, surfaces: &[Surface]) -> Result<(Self, EntityHome), Halt> {
         cx.machine.asked.numbered = true;
         let alone = stages::is_within(cx, module);
         let own = if alone {
@@ -53,7 +53,7 @@ impl Scene {
         };
         if !alone && surfaces.iter().all(|surface| own.find(surface).is_some()) {
             let annex = if cx.parts(module).is_ok() { None } else { Some(own.model.clone()) };
-            return Ok((own, Home { module, annex, alone }));
+            return Ok((own, EntityHome { module, annex, alone }));
         }
         let nothing = Self { model: Arc::default(), ..own };
         let asked = nothing.missing(cx, surfaces);
@@ -71,7 +71,7 @@ impl Scene {
             }
         };
         let annex = Some(scene.model.clone());
-        Ok((scene, Home { module, annex, alone }))
+        Ok((scene, EntityHome { module, annex, alone }))
     }
 
     /// This scene, extended by those of `surfaces` that it does not hold.

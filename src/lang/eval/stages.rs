@@ -27,7 +27,7 @@ use crate::network::Network;
 const GEOMETRY: &[Keyword] = &[Keyword::Point, Keyword::Curve, Keyword::ModelingCurve, Keyword::Surface];
 
 /// Told declaration, keyword, indices, name and value of each member.
-type Member<'m> = &'m mut dyn FnMut(u32, Keyword, [u32; 2], Arc<str>, &Value);
+type MemberVisitor<'m> = &'m mut dyn FnMut(u32, Keyword, [u32; 2], Arc<str>, &Value);
 /// Declaration, indices, name and value of a member.
 type Found<T> = (u32, [u32; 2], Arc<str>, T);
 
@@ -69,7 +69,7 @@ fn walk(value: &Value, levels: usize, member: [u32; 2], level: usize, out: &mut 
 }
 
 /// Calls `out` for each evaluated member of each declaration with one of these keywords.
-pub(crate) fn each_member(module: &Module, names: &Names, keywords: &[Keyword], out: Member<'_>) {
+pub(crate) fn each_member(module: &Module, names: &Names, keywords: &[Keyword], out: MemberVisitor<'_>) {
     for (i, declaration) in module.script.declarations.iter().enumerate() {
         if !keywords.contains(&declaration.keyword) {
             continue;

@@ -63,7 +63,7 @@ pub(crate) struct Gap {
 }
 
 /// A file with its comments in order.
-pub(crate) struct Text<'a> {
+pub(crate) struct CommentedFile<'a> {
     pub source: &'a str,
     pub tokens: &'a Tokens,
     pub comments: Vec<Comment>,
@@ -80,7 +80,7 @@ pub(crate) fn width(text: &str) -> u32 {
 /// More columns than any line has.
 const MANY: u32 = 10_000;
 
-impl<'a> Text<'a> {
+impl<'a> CommentedFile<'a> {
     pub fn new(source: &'a str, tokens: &'a Tokens) -> Self {
         let docs = tokens.docs.iter().map(|&(_, span)| Comment { start: span.start - 3, end: span.end, doc: true });
         let others = tokens.comments.iter().map(|span| Comment { start: span.start, end: span.end, doc: false });

@@ -1,13 +1,13 @@
 //! Declarations to commands.
 
 use crate::lang::fmt::command::Cmd;
-use crate::lang::fmt::expression::{Builder, Form};
+use crate::lang::fmt::expression::{CommandBuilder, Form};
 use crate::lang::syntax::Kind;
 
 /// Marks `{` of a clause; those of declarations are one more than their keyword's number.
 const CLAUSE: u8 = 1;
 
-impl Builder<'_> {
+impl CommandBuilder<'_> {
     /// The whole declaration.
     pub fn declaration(&mut self) {
         match self.next() {

@@ -14,7 +14,7 @@ pub(crate) enum Form {
 }
 
 /// Writes the commands of one sound declaration; that it is sound is what all indexing here rests on.
-pub(crate) struct Builder<'a> {
+pub(crate) struct CommandBuilder<'a> {
     pub atoms: &'a [Atom],
     /// Where the bracket of an atom is closed.
     mates: &'a [u32],
@@ -61,7 +61,7 @@ pub(crate) fn mates(atoms: &[Atom], mates: &mut Vec<u32>) {
     }
 }
 
-impl<'a> Builder<'a> {
+impl<'a> CommandBuilder<'a> {
     pub fn new(atoms: &'a [Atom], mates: &'a [u32], cmds: &'a mut Vec<Cmd>) -> Self {
         cmds.clear();
         Self { atoms, mates, at: 0, cmds, operators: Vec::new() }

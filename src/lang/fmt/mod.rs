@@ -24,8 +24,8 @@ pub mod writer;
 use std::ops::Range;
 
 use crate::lang::diag::diagnostic::{Diagnostic, FileId};
-use crate::lang::fmt::atoms::{Comment, Text};
-use crate::lang::fmt::expression::Builder;
+use crate::lang::fmt::atoms::{Comment, CommentedFile};
+use crate::lang::fmt::expression::CommandBuilder;
 use crate::lang::fmt::writer::Writer;
 use crate::lang::syntax;
 use crate::lang::syntax::Tokens;
@@ -97,10 +97,10 @@ fn parts(tokens: &Tokens, sound: &[Range<usize>], quiet: u32) -> Vec<Part> {
 }
 
 fn layout(source: &str, tokens: &Tokens, sound: &[Range<usize>]) -> String {
-    let text = Text::new(source, tokens);
+    let text = CommentedFile::new(source, tokens);
     let end = source.len() as u32;
     let quiet = tokens.quiet_from.map_or(end, |from| line_start(source, from));
-    let mut file = File { writer: Writer::new(&text), text: &text, comment: 0, end: None };
+    let mut file = FormattedFile { writer: Writer::new(&text), text: &text, comment: 0, end: None };
     let (mut atoms, mut mates, mut cmds) = (Vec::new(), Vec::new(), Vec::new());
     for part in parts(tokens, sound, quiet) {
         let start = tokens.starts[part.tokens.start];
@@ -113,7 +113,7 @@ fn layout(source: &str, tokens: &Tokens, sound: &[Range<usize>]) -> String {
             file.writer.before(before, false);
             text.atoms(part.tokens.clone(), &mut file.comment, &mut atoms);
             expression::mates(&atoms, &mut mates);
-            Builder::new(&atoms, &mates, &mut cmds).declaration();
+            CommandBuilder::new(&atoms, &mates, &mut cmds).declaration();
             file.writer.commands(&cmds, &atoms);
             file.end = Some(tokens.ends[part.tokens.end - 1]);
         } else {
@@ -131,16 +131,16 @@ fn line_start(source: &str, at: u32) -> u32 {
     source[..at as usize].rfind('\n').map_or(0, |n| n as u32 + 1)
 }
 
-struct File<'a> {
+struct FormattedFile<'a> {
     writer: Writer<'a>,
-    text: &'a Text<'a>,
+    text: &'a CommentedFile<'a>,
     /// First comment that is not placed yet.
     comment: usize,
     /// Where the last declaration ends.
     end: Option<u32>,
 }
 
-impl File<'_> {
+impl FormattedFile<'_> {
     /// Places what stands between the last declaration and the next one, which begins at `start`; gives the comments
     /// before the latter on its line.
     fn above(&mut self, start: u32) -> Range<usize> {

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::lang::fmt::atoms::{Atom, Text, width};
+use crate::lang::fmt::atoms::{Atom, CommentedFile, width};
 use crate::lang::fmt::command::Cmd;
 
 /// Columns of a line, the comment at its end aside.
@@ -35,7 +35,7 @@ pub(crate) const NOWHERE: u32 = u32::MAX;
 
 /// The text that grows, and what is known of its lines.
 pub(crate) struct Writer<'a> {
-    text: &'a Text<'a>,
+    text: &'a CommentedFile<'a>,
     pub out: String,
     pub lines: Vec<Line>,
     column: u32,
@@ -147,7 +147,7 @@ impl Measures {
 }
 
 impl<'a> Writer<'a> {
-    pub fn new(text: &'a Text<'a>) -> Self {
+    pub fn new(text: &'a CommentedFile<'a>) -> Self {
         let out = String::with_capacity(text.source.len() + text.source.len() / 8);
         let mut writer = Self {
             text,

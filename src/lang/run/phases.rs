@@ -41,7 +41,7 @@ pub struct Entry<'e> {
 }
 
 /// A tolerance as it is written.
-struct Said {
+struct WrittenTolerance {
     /// Model units.
     point: f64,
     /// Radians.
@@ -145,7 +145,7 @@ impl Cx<'_> {
     }
 
     /// `tolerance 0.001mm, 0.5deg`: lengths in model units, angles in radians.
-    fn said_tolerance(&mut self) -> Option<Said> {
+    fn said_tolerance(&mut self) -> Option<WrittenTolerance> {
         let index = self.single(ModuleId::MAIN, Keyword::Tolerance)?;
         let script = self.machine.at(ModuleId::MAIN).script.clone();
         let DeclarationKind::Tolerance(exprs) = &script.declarations[index as usize].kind else { return None };
@@ -161,14 +161,14 @@ impl Cx<'_> {
             Some(Value::Number(q)) => Some(q.value),
             _ => None,
         };
-        Some(Said { point: number(0)?, angle: number(1).map(units::radians), at: (index, exprs[0]) })
+        Some(WrittenTolerance { point: number(0)?, angle: number(1).map(units::radians), at: (index, exprs[0]) })
     }
 
     /// The tolerance that is written, or the one for the size of the model. E306 for one that rounding does not keep; the smallest one that
     /// it does is gone on with.
-    fn fix_tolerance(&mut self, said: Option<Said>) {
+    fn fix_tolerance(&mut self, said: Option<WrittenTolerance>) {
         let (diagonal, furthest) = (self.seen.diagonal(), self.seen.furthest());
-        let Some(Said { point, angle, at: (index, expr) }) = said else {
+        let Some(WrittenTolerance { point, angle, at: (index, expr) }) = said else {
             let fallback = units::convert(FALLBACK_MM, units::MILLIMETRE, self.program.unit, 1);
             self.tolerance = Some(Tolerance::from_diagonal(diagonal, fallback).at_distance(furthest));
             return;

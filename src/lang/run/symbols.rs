@@ -1,6 +1,6 @@
 //! What a script declares, as tools show it: names, places, states, dependencies, and a line about each value.
 
-use crate::lang::assist::Shape;
+use crate::lang::assist::KnownType;
 use crate::lang::diag::diagnostic::FileId;
 use crate::lang::diag::span::Span;
 use crate::lang::eval::context::Cx;
@@ -51,7 +51,7 @@ pub struct Symbol {
     /// How far it came.
     pub condition: Condition,
     /// What kind of value it has.
-    pub shape: Shape,
+    pub shape: KnownType,
     /// Declarations of the same script that it names, by their places in the list of symbols.
     pub needs: Vec<usize>,
 }
@@ -74,7 +74,7 @@ impl Cx<'_> {
                     State::Failed => Condition::Failed,
                     _ => Condition::Skipped,
                 },
-                shape: if let State::Done(value) = state { Shape::of_value(value, &self.program.names) } else { Shape::Unknown },
+                shape: if let State::Done(value) = state { KnownType::of_value(value, &self.program.names) } else { KnownType::Unknown },
                 needs: self.needs(ModuleId::MAIN, declaration),
             }
         };

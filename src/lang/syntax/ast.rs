@@ -224,7 +224,7 @@ pub struct Bound {
 
 /// `key: value` of a settings block.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Setting {
+pub struct SettingEntry {
     /// The key.
     pub key: Name,
     /// Where it stands.
@@ -243,7 +243,7 @@ pub struct MeshClause {
     /// What it speaks of.
     pub things: Vec<ExprId>,
     /// Its settings.
-    pub settings: Vec<Setting>,
+    pub settings: Vec<SettingEntry>,
 }
 
 /// First word of a mesh clause.
@@ -344,7 +344,7 @@ pub enum DeclarationKind {
         /// What it holds.
         things: Vec<ExprId>,
         /// `key: value` pairs.
-        settings: Vec<Setting>,
+        settings: Vec<SettingEntry>,
         /// Clauses (`mesh` only).
         clauses: Vec<MeshClause>,
     },
@@ -359,7 +359,7 @@ pub enum DeclarationKind {
         /// `to "path"`.
         to: Option<ExprId>,
         /// `{ settings }`.
-        settings: Vec<Setting>,
+        settings: Vec<SettingEntry>,
     },
 }
 

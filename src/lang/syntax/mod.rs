@@ -58,12 +58,12 @@ use grammar::{Grammar, Rule};
 ///
 /// The reports are sorted by place. The tree refers to `names`, where new names are entered.
 pub fn parse(source: &str, file: FileId, names: &mut Names) -> (Script, Vec<Diagnostic>) {
-    let Read { script, found, .. } = read_as(source, file, names, true);
+    let TokenizedScript { script, found, .. } = read_as(source, file, names, true);
     (script, found)
 }
 
 /// A script as the formatter needs it: with its tokens and comments.
-pub(crate) struct Read {
+pub(crate) struct TokenizedScript {
     /// What [`parse`] gives; the formatter leaves it empty.
     script: Script,
     /// What is wrong, sorted by place.
@@ -75,14 +75,14 @@ pub(crate) struct Read {
 }
 
 /// Checks a script and keeps its tokens.
-pub(crate) fn read(source: &str, file: FileId, names: &mut Names) -> Read {
+pub(crate) fn read(source: &str, file: FileId, names: &mut Names) -> TokenizedScript {
     read_as(source, file, names, false)
 }
 
-fn read_as(source: &str, file: FileId, names: &mut Names, fills: bool) -> Read {
+fn read_as(source: &str, file: FileId, names: &mut Names, fills: bool) -> TokenizedScript {
     if source.len() as u64 > SOURCE_BYTES {
         let found = vec![Mistake::TooLarge { bytes: source.len() }.diagnose(source, file)];
-        return Read { script: Script::default(), found, tokens: Tokens::default(), sound: Vec::new() };
+        return TokenizedScript { script: Script::default(), found, tokens: Tokens::default(), sound: Vec::new() };
     }
     let tokens = scan::scan(source);
     let (pieces, mistakes) = split::split(&tokens);
@@ -100,7 +100,7 @@ fn read_as(source: &str, file: FileId, names: &mut Names, fills: bool) -> Read {
         sound: Vec::with_capacity(pieces.len()),
     }
     .run(pieces, mistakes);
-    Read { script, found, tokens, sound }
+    TokenizedScript { script, found, tokens, sound }
 }
 /// Where each token of a script stands; comments and blanks have none.
 pub(crate) fn token_spans(source: &str) -> Vec<Span> {

@@ -27,7 +27,7 @@ pub(crate) enum Fault {
 }
 
 /// A number read from the text.
-pub(crate) struct Read {
+pub(crate) struct ReadNumber {
     /// Byte after its last one.
     pub end: usize,
     /// Where its unit begins; `end` when it has none.
@@ -101,7 +101,7 @@ fn word(source: &str, at: usize) -> usize {
 }
 
 /// Reads the number that begins with a digit at `start`, its unit included.
-pub(crate) fn read(source: &str, start: usize) -> Read {
+pub(crate) fn read(source: &str, start: usize) -> ReadNumber {
     let bytes = source.as_bytes();
     let byte = |at: usize| bytes.get(at).copied().unwrap_or(0);
     let mut at = digits(bytes, start);
@@ -126,9 +126,9 @@ pub(crate) fn read(source: &str, start: usize) -> Read {
     if fault.is_none() && byte(at) == b'.' && byte(at + 1).is_ascii_digit() {
         at = digits(bytes, at + 1);
         fault = Some(Fault::SecondDot);
-        return Read { end: at, unit_start: at, fault };
+        return ReadNumber { end: at, unit_start: at, fault };
     }
-    Read { end: at, unit_start, fault }
+    ReadNumber { end: at, unit_start, fault }
 }
 
 /// Byte after the unit that begins at `at`. What follows `/` belongs to it only when it is a unit and is not used like a

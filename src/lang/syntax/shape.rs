@@ -159,8 +159,8 @@ impl Filler<'_> {
         family.iter().map(|f| self.family_one(f)).collect()
     }
 
-    fn settings(&mut self, settings: &[Setting]) -> Vec<Setting> {
-        settings.iter().map(|s| Setting { key: self.name(s.key), key_span: self.span(s.key_span), value: s.value }).collect()
+    fn settings(&mut self, settings: &[SettingEntry]) -> Vec<SettingEntry> {
+        settings.iter().map(|s| SettingEntry { key: self.name(s.key), key_span: self.span(s.key_span), value: s.value }).collect()
     }
 
     fn ty(&mut self, ty: &Option<TypeName>) -> Option<TypeName> {

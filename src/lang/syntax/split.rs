@@ -22,7 +22,7 @@ pub(crate) struct Piece {
 /// An open bracket, how many prefix operators and `if`s wait inside it, and how tall the trees of its items are: of the
 /// one at hand, and of the tallest one before it.
 #[derive(Default)]
-struct Open {
+struct OpenGroup {
     token: usize,
     prefixes: usize,
     choices: usize,
@@ -32,7 +32,7 @@ struct Open {
 
 struct Splitter<'a> {
     tokens: &'a Tokens,
-    open: Vec<Open>,
+    open: Vec<OpenGroup>,
     start: usize,
     /// The piece at hand has a `=`.
     equals: bool,
@@ -50,7 +50,7 @@ struct Splitter<'a> {
 pub(crate) fn split(tokens: &Tokens) -> (Vec<Piece>, Vec<Mistake>) {
     let mut splitter = Splitter {
         tokens,
-        open: vec![Open::default()],
+        open: vec![OpenGroup::default()],
         start: 0,
         equals: false,
         broken: false,
@@ -173,7 +173,7 @@ impl Splitter<'_> {
     }
 
     fn enter(&mut self, at: usize) {
-        self.open.push(Open { token: at, ..Open::default() });
+        self.open.push(OpenGroup { token: at, ..OpenGroup::default() });
         if self.open.len() == NESTED_BRACKETS + 2 {
             self.deep(at, "brackets", NESTED_BRACKETS);
         }
@@ -231,7 +231,7 @@ impl Splitter<'_> {
 
     fn leave(&mut self, at: usize) {
         let kind = self.tokens.kinds[at];
-        let matches = |open: &Open| closer(self.tokens.kinds[open.token]) == Some(plain(kind));
+        let matches = |open: &OpenGroup| closer(self.tokens.kinds[open.token]) == Some(plain(kind));
         let Some(depth) = self.open.iter().skip(1).rposition(matches) else {
             if !self.broken {
                 let inside = (self.open.len() > 1).then(|| self.open.last().map(|o| self.tokens.span(o.token))).flatten();
@@ -305,7 +305,7 @@ impl Splitter<'_> {
         self.too_deep = false;
         self.waiting = 0;
         self.open.truncate(1);
-        self.open[0] = Open { token: end, ..Open::default() };
+        self.open[0] = OpenGroup { token: end, ..OpenGroup::default() };
     }
 }
 

@@ -190,7 +190,7 @@ impl Builder<'_> {
         Ok(DeclarationKind::Collection { bound, family, things, settings, clauses })
     }
 
-    fn block(&mut self, pair: Pair<'_>, settings: &mut Vec<Setting>, clauses: &mut Vec<MeshClause>) -> Result<()> {
+    fn block(&mut self, pair: Pair<'_>, settings: &mut Vec<SettingEntry>, clauses: &mut Vec<MeshClause>) -> Result<()> {
         for part in pair.into_inner() {
             match part.as_rule() {
                 Rule::setting => settings.push(self.setting(part)?),
@@ -201,10 +201,10 @@ impl Builder<'_> {
         Ok(())
     }
 
-    pub(crate) fn setting(&mut self, pair: Pair<'_>) -> Result<Setting> {
+    pub(crate) fn setting(&mut self, pair: Pair<'_>) -> Result<SettingEntry> {
         let Bound { name: key, span: key_span } = self.only_bound(pair, Rule::word)?;
         let value = self.exprs(pair)?[0];
-        Ok(Setting { key, key_span, value })
+        Ok(SettingEntry { key, key_span, value })
     }
 
     fn clause(&mut self, pair: Pair<'_>) -> Result<MeshClause> {

@@ -119,7 +119,7 @@ pub struct Direction(pub DVec3);
 
 /// A node by its place.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Node(pub DVec3);
+pub struct NodePlace(pub DVec3);
 
 /// A vector with its dimension.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -137,7 +137,7 @@ convert! {
     Quantity: Ty::Measure, Value::Number(q) => q, self => Value::Number(self);
     Arc<str>: Ty::Text, Value::Text(t) => t, self => Value::Text(self);
     Point: Ty::Point, Value::Vector(p, _) | Value::Node(p) => Self(p), self => Value::point(self.0);
-    Node: Ty::Node, Value::Vector(p, _) | Value::Node(p) => Self(p), self => Value::Node(self.0);
+    NodePlace: Ty::Node, Value::Vector(p, _) | Value::Node(p) => Self(p), self => Value::Node(self.0);
     Direction: Ty::Direction, Value::Vector(p, _) | Value::Node(p) => Self(p), self => Value::Vector(self.0, Dim::NONE);
     Vector: Ty::Vector, Value::Vector(p, dim) => Self(p, dim), self => Value::Vector(self.0, self.1);
     Chain: Ty::Curve, Value::Curve(c) => c, self => Value::Curve(self);

@@ -9,7 +9,7 @@ pub const NO_MEMBER: u32 = u32::MAX;
 
 /// One entry: a declaration, the member of its family, an expression of it, and the call it was run by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Place {
+pub struct OriginEntry {
     /// Script.
     pub module: ModuleId,
     /// Declaration in it.
@@ -74,17 +74,17 @@ impl Origins {
     }
 
     /// A new origin.
-    pub fn add(&mut self, place: Place) -> Origin {
-        let Place { module, declaration, member, expr, caller } = place;
+    pub fn add(&mut self, place: OriginEntry) -> Origin {
+        let OriginEntry { module, declaration, member, expr, caller } = place;
         let Some(&home) = self.homes.get(module.index()).and_then(|of| of.get(declaration as usize)) else { return Origin::NONE };
         self.places.push(Stored { home, member, expr, caller });
         Origin(u32::try_from(self.places.len()).unwrap_or(0))
     }
 
     /// The entry of an origin; `None` when its declaration is no longer there.
-    pub fn place(&self, origin: Origin) -> Option<Place> {
+    pub fn place(&self, origin: Origin) -> Option<OriginEntry> {
         let Stored { home, member, expr, caller } = *self.places.get((origin.0 as usize).wrapping_sub(1))?;
         let (module, declaration) = self.standing[home.0 as usize]?;
-        Some(Place { module, declaration, member, expr, caller })
+        Some(OriginEntry { module, declaration, member, expr, caller })
     }
 }

@@ -16,7 +16,7 @@ use crate::surface::Surface;
 
 /// What a file says of one surface.
 #[derive(Clone, Debug, Default)]
-pub struct Said {
+pub struct SurfaceProperties {
     /// The file's name for it.
     pub name: Arc<str>,
     /// The name as it stands in the file, where it has one; others may have the same.
@@ -52,7 +52,7 @@ pub struct PartFile {
     /// Script it belongs to.
     pub module: ModuleId,
     /// Of each surface, in the order of the part's faces.
-    pub said: Vec<Said>,
+    pub said: Vec<SurfaceProperties>,
     /// Names of solids and shells by those of scripts (`part.solids[0]`), where the file has one: as it stands there, and that of which
     /// there is one only.
     pub bodies: BTreeMap<Arc<str>, [Arc<str>; 2]>,

@@ -102,7 +102,7 @@ pub const SHELL: &[Setting] = &[
 ];
 
 /// `export x to "…" { … }`: `encoding` and `element` are decided by [`Format::check`](crate::io::mesh_files::format::Format::check),
-/// `schema` by [`Schema`](crate::io::step::write::Schema), `shells` by [`Shown`](crate::io::iges::write::Shown), `units` by
+/// `schema` by [`Schema`](crate::io::step::write::Schema), `shells` by [`IgesShape`](crate::io::iges::write::IgesShape), `units` by
 /// [`Deck`](crate::io::Deck).
 pub const EXPORT: &[Setting] = &[
     Setting { key: "encoding", docs: "Binary or text.", default: "by format", ty: Ty::Choice(ENCODINGS), range: &[] },

@@ -110,7 +110,7 @@ impl Quantity {
 /// The surface model that patches, edges and vertices are numbered in: that of a script, or one of a few surfaces of which the script
 /// does not declare all (written inside a shell, cut, moved).
 #[derive(Clone, Debug)]
-pub struct Home {
+pub struct EntityHome {
     /// The script, whose network it stands on.
     pub module: ModuleId,
     /// The model of those surfaces; `None` for the script's own.
@@ -119,19 +119,19 @@ pub struct Home {
     pub alone: bool,
 }
 
-impl From<ModuleId> for Home {
+impl From<ModuleId> for EntityHome {
     fn from(module: ModuleId) -> Self {
         Self { module, annex: None, alone: false }
     }
 }
 
-impl From<&Home> for Home {
-    fn from(home: &Home) -> Self {
+impl From<&EntityHome> for EntityHome {
+    fn from(home: &EntityHome) -> Self {
         home.clone()
     }
 }
 
-impl PartialEq for Home {
+impl PartialEq for EntityHome {
     fn eq(&self, other: &Self) -> bool {
         let same = match (&self.annex, &other.annex) {
             (None, None) => true,
@@ -248,11 +248,11 @@ pub enum Value {
     /// A link of a script's network.
     Link(ModuleId, LinkId),
     /// An edge of a surface model.
-    Edge(Home, Arc<SharedEdge>),
+    Edge(EntityHome, Arc<SharedEdge>),
     /// A vertex of a surface model.
-    Vertex(Home, VertexId),
+    Vertex(EntityHome, VertexId),
     /// A patch of a surface model.
-    Patch(Home, PatchId),
+    Patch(EntityHome, PatchId),
     /// A surface.
     Surface(Surface),
     /// A shell.
@@ -261,7 +261,7 @@ pub enum Value {
     Mesh(Arc<MeshValue>),
     /// An unbounded plane.
     Plane(Arc<Plane>),
-    /// Imported cells.
+    /// Item cells.
     Table(Arc<Table>),
     /// A module: `ribs` after `use "ribs.loft" as ribs`.
     Module(ModuleId),

@@ -25,7 +25,7 @@ use crate::mesh::tri::shape::{Star, quality};
 use crate::mesh::tri::triangulation::{Patch, Ring, Triangulation};
 
 /// The bound of three nodes as a triangle over the limits, which are kept up to 1.
-pub type TriangleBound<'a> = dyn Fn(&Triangulation, [u32; 3]) -> f64 + 'a;
+pub type TriangleRatio<'a> = dyn Fn(&Triangulation, [u32; 3]) -> f64 + 'a;
 
 /// Whether an edge between two nodes may be as long as it is.
 pub type Allowed<'a> = dyn Fn(&Triangulation, u32, u32) -> bool + 'a;
@@ -33,7 +33,7 @@ pub type Allowed<'a> = dyn Fn(&Triangulation, u32, u32) -> bool + 'a;
 /// The conditions of a coarsening.
 pub struct Coarsener<'a> {
     /// Bounds over the limits.
-    pub bound: &'a TriangleBound<'a>,
+    pub bound: &'a TriangleRatio<'a>,
     /// Lengths.
     pub allowed: &'a Allowed<'a>,
     /// The point of a place of the chart.

@@ -224,13 +224,13 @@ fn near_miss(end: &CurveEnd, other: (Origin, DVec3, bool), tolerance: f64, say: 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::fault::Plain;
+    use crate::base::fault::PlainWords;
 
     #[test]
     fn a_miss_names_gap_place_tolerance_and_a_snap_that_passes() {
         let end = |last, x| CurveEnd { of: Origin::NONE, last, at: DVec3::new(x, 0.0, 0.0) };
         let fault = EndFault::EndsMiss { a: end(true, 0.0), b: end(false, 0.3), near: true, tolerance: 0.001 };
-        let report = fault.describe(&Plain);
+        let report = fault.describe(&PlainWords);
         assert_eq!(fault.code().0, "E501");
         assert_eq!(report.message, "one curve and another miss each other by 0.300000 at (0.000000, 0.000000, 0.000000)");
         assert_eq!(report.help.as_deref(), Some("end both at one point, or declare `snap 0.5`"));

@@ -23,7 +23,7 @@ use crate::surface::shapes::weights::{BlendAxis, Rule};
 
 /// How curves are blended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Method {
+pub enum BlendMethod {
     /// Linear in a grid of one cell, so that four straight lines give the hyperbolic paraboloid; cubic where inner curves
     /// make several cells (`coons`).
     Coons,
@@ -37,7 +37,7 @@ pub enum Method {
     Gordon,
 }
 
-impl Method {
+impl BlendMethod {
     fn kind(self) -> SurfaceKind {
         match self {
             Self::Lagrange => SurfaceKind::Transfinite,
@@ -61,9 +61,9 @@ impl Method {
 
 /// Settings of [`build`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings {
+pub struct CoonsSettings {
     /// How curves are blended.
-    pub method: Method,
+    pub method: BlendMethod,
     /// How curves are matched between their meetings.
     pub reparam: Reparam,
     /// The declaration.
@@ -84,14 +84,14 @@ pub struct Grid<'a> {
 /// A surface through all curves of a grid, with notes and warnings (N608, N609, W614).
 ///
 /// Fails with E604 when meetings coincide or come in different orders.
-pub fn build(grid: &Grid, settings: &Settings, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
+pub fn build(grid: &Grid, settings: &CoonsSettings, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
     if grid.flow.kind == FlowKind::UniformTrilateral {
         return trilateral(grid, settings, tolerance);
     }
     let mut notes = Vec::new();
     let flow = grid.flow;
     // A curve of an exact net begins at its crossing, not at an end within the tolerance of it.
-    let snap = if settings.method == Method::Gordon { tolerance.rounding } else { tolerance.point };
+    let snap = if settings.method == BlendMethod::Gordon { tolerance.rounding } else { tolerance.point };
     let ends_v = (grid.poles.0.is_some(), grid.poles.1.is_some());
     let along_u = prepare(
         grid,
@@ -136,7 +136,7 @@ pub fn build(grid: &Grid, settings: &Settings, tolerance: &Tolerance) -> Result<
         rails_u.push(Rail::Point(p));
     }
     let blend = Blend::new(BlendAxis::new(nodes_u, rules.0), BlendAxis::new(nodes_v, rules.1), rails_v, rails_u);
-    if settings.method == Method::Lagrange {
+    if settings.method == BlendMethod::Lagrange {
         notes.extend(oscillation(&blend, settings.origin));
     }
     let made = Made {
@@ -248,7 +248,7 @@ pub(crate) fn borders(blend: &Blend) -> Vec<Border> {
 
 /// Three borders and no pole: one along u, two along v (u = 0 and the slant). Ends that stand out beyond another border are left out with a
 /// note.
-fn trilateral(grid: &Grid, settings: &Settings, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
+fn trilateral(grid: &Grid, settings: &CoonsSettings, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
     let mut notes = Vec::new();
     // Each from the border where it begins to the one where it ends.
     let mut side = |member: Option<&Member>, meets: [Option<&Member>; 2]| -> Result<(Rail, Border)> {

@@ -10,7 +10,7 @@ use crate::network::Chain;
 use crate::network::fault::NetFault;
 use crate::surface::blended::family::evenly;
 use crate::surface::blended::gordon::{CurveNet, Named, blended};
-use crate::surface::blended::skin_align::{Read, Section, aligned, distances, runs_back};
+use crate::surface::blended::skin_align::{Read, SkinSection, aligned, distances, runs_back};
 use crate::surface::blended::skin_ends::{Leaving, Spanned, ended};
 use crate::surface::blended::skin_fit::fitted;
 use crate::surface::core::surface::Surface;
@@ -35,7 +35,7 @@ pub enum Across {
 
 /// Settings of [`skin`].
 #[derive(Clone, Copy, Debug)]
-pub struct Settings {
+pub struct SkinSettings {
     /// How it runs from section to section.
     pub across: Across,
     /// The last section is joined to the first one.
@@ -49,7 +49,7 @@ pub struct Settings {
 }
 
 /// E304 unless there are enough sections, all open or all closed, and points only where they may be.
-pub fn said_well(sections: &[Section], closed: bool, tolerance: &Tolerance) -> Result<()> {
+pub fn said_well(sections: &[SkinSection], closed: bool, tolerance: &Tolerance) -> Result<()> {
     let wrong = |found: String, range: &str| -> Result<()> {
         Err(ValueFault::OutsideRange { argument: "sections", found, range: range.to_owned() }.into())
     };
@@ -57,7 +57,7 @@ pub fn said_well(sections: &[Section], closed: bool, tolerance: &Tolerance) -> R
     if sections.len() < least {
         return wrong(format!("{} sections", sections.len()), &format!("at least {least}"));
     }
-    let is_point = |s: &Section| matches!(s, Section::Point(_));
+    let is_point = |s: &SkinSection| matches!(s, SkinSection::Point(_));
     let last = sections.len() - 1;
     if let Some(k) = (0..=last).find(|k| is_point(&sections[*k]) && (closed || (*k != 0 && *k != last))) {
         let may = if closed { "curves only where it is closed" } else { "points at the first and the last place only" };
@@ -66,7 +66,7 @@ pub fn said_well(sections: &[Section], closed: bool, tolerance: &Tolerance) -> R
     if sections.iter().all(is_point) {
         return wrong("points only".to_owned(), "a curve between them");
     }
-    let curves = || sections.iter().filter_map(|s| if let Section::Curve(c) = s { Some(c) } else { None });
+    let curves = || sections.iter().filter_map(|s| if let SkinSection::Curve(c) = s { Some(c) } else { None });
     let (rings, all) = (curves().filter(|c| c.is_closed(tolerance)).count(), curves().count());
     if rings != 0 && rings != all {
         return wrong(format!("{rings} closed of {all} curves"), "all open or all closed");
@@ -79,8 +79,8 @@ pub fn said_well(sections: &[Section], closed: bool, tolerance: &Tolerance) -> R
 /// Every section is read in the direction, and every closed one from the start, in which it runs nearest to the section
 /// before; v goes with the mean distance between sections. Needs two sections, three where they close; the curves are all
 /// open or all closed, at least one of them, and only the first and the last section is a point.
-pub fn skin(sections: &[Section], settings: &Settings, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
-    let chains: Vec<Chain> = sections.iter().filter_map(|s| if let Section::Curve(c) = s { Some(c.clone()) } else { None }).collect();
+pub fn skin(sections: &[SkinSection], settings: &SkinSettings, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
+    let chains: Vec<Chain> = sections.iter().filter_map(|s| if let SkinSection::Curve(c) = s { Some(c.clone()) } else { None }).collect();
     let round = chains.iter().all(|c| c.is_closed(tolerance));
     let aligned = aligned(sections, round, tolerance)?;
     if settings.closed && !round && runs_back(&aligned) {
@@ -90,7 +90,7 @@ pub fn skin(sections: &[Section], settings: &Settings, tolerance: &Tolerance) ->
     let (nodes, length) = distances(&aligned, settings.closed, round);
     let least = tolerance.point.max(tolerance.parameter * length);
     if let Some(k) = nodes.windows(2).position(|w| length <= least || (w[1] - w[0]) * length <= least) {
-        let origin = |k: usize| if let Section::Curve(c) = &sections[k] { c.origin() } else { settings.origin };
+        let origin = |k: usize| if let SkinSection::Curve(c) = &sections[k] { c.origin() } else { settings.origin };
         let closing = k + 1 == sections.len();
         let (a, b) = if closing { (origin(0), origin(k)) } else { (origin(k), origin(k + 1)) };
         return Err(NetFault::OneSection { a, b, at: aligned[k].point(0.0), closing }.into());
@@ -120,7 +120,7 @@ pub fn skin(sections: &[Section], settings: &Settings, tolerance: &Tolerance) ->
         let (surface, mut notes) = made(fit);
         let (off, k, at) = farthest(&surface, &nodes, &rails);
         if off <= allowed || last {
-            let section = if let Section::Curve(c) = &sections[k] { c.origin() } else { settings.origin };
+            let section = if let SkinSection::Curve(c) = &sections[k] { c.origin() } else { settings.origin };
             let given = nodes.len() - 1;
             notes.push(DeviationFault::Smoothed { surface: settings.origin, section, off, at, spans, given }.into());
             return Ok((surface, notes));

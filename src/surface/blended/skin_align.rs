@@ -47,16 +47,16 @@ impl Read {
 }
 
 /// The sections as they are read; `round`: the curves among them are closed.
-pub fn aligned(sections: &[Section], round: bool, tolerance: &Tolerance) -> Result<Vec<Read>> {
+pub fn aligned(sections: &[SkinSection], round: bool, tolerance: &Tolerance) -> Result<Vec<Read>> {
     let mut all: Vec<Read> = Vec::with_capacity(sections.len());
     for section in sections {
         job::poll();
         let before = all.iter().rev().find_map(|read| if let Read::Curve(chain, turned) = read { Some((chain, *turned)) } else { None });
         let next = match (section, before) {
-            (Section::Point(p), _) => Read::Point(*p),
-            (Section::Curve(chain), None) => Read::Curve(chain.clone(), false),
-            (Section::Curve(chain), Some(before)) if round => nearest_start(before, chain, tolerance)?,
-            (Section::Curve(chain), Some(before)) => Read::Curve(chain.clone(), nearer_backwards(before.0, before.1, chain)),
+            (SkinSection::Point(p), _) => Read::Point(*p),
+            (SkinSection::Curve(chain), None) => Read::Curve(chain.clone(), false),
+            (SkinSection::Curve(chain), Some(before)) if round => nearest_start(before, chain, tolerance)?,
+            (SkinSection::Curve(chain), Some(before)) => Read::Curve(chain.clone(), nearer_backwards(before.0, before.1, chain)),
         };
         all.push(next);
     }
@@ -194,7 +194,7 @@ fn nearest_start(before: (&Chain, bool), section: &Chain, tolerance: &Tolerance)
 
 /// What a skin goes through.
 #[derive(Clone, Debug)]
-pub enum Section {
+pub enum SkinSection {
     /// A curve.
     Curve(Chain),
     /// A point, where the skin begins or ends in a pole.

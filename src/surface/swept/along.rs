@@ -30,7 +30,7 @@ const SAMPLES: usize = 9;
 
 /// Settings of [`along`].
 #[derive(Clone, Copy, Debug)]
-pub struct Settings {
+pub struct AlongSettings {
     /// Turn about the path from its start to its end, radians.
     pub twist: f64,
     /// The profile turns about corners of the path; else it is cut by their bisecting planes.
@@ -44,7 +44,7 @@ pub struct Settings {
 /// u runs along the path, v along the profile, both by arc length. At corners of the path the surface is cut by the
 /// bisecting plane, or the profile is turned about the corner, and then u goes on as far as its farthest point moves. A straight path gives the extruded surface, an arc the revolved one. Returns W639 where it folds.
 /// Fails with E636 where the path has a cusp.
-pub fn along(profile: &Chain, path: &Chain, settings: &Settings, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
+pub fn along(profile: &Chain, path: &Chain, settings: &AlongSettings, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
     if settings.round && !path.kinks(tolerance).is_empty() {
         return rounded(profile, path, settings, tolerance);
     }
@@ -60,7 +60,7 @@ pub fn along(profile: &Chain, path: &Chain, settings: &Settings, tolerance: &Tol
 }
 
 /// With turns about the corners. W639 where the profile reaches over to the inner side of one.
-fn rounded(profile: &Chain, path: &Chain, settings: &Settings, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
+fn rounded(profile: &Chain, path: &Chain, settings: &AlongSettings, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
     let mut legs = Legs::new(path, settings.twist, tolerance)?;
     let turned = Rounded::new(&mut legs, profile, tolerance).ok_or_else(|| no_frame(path, (0.0, 1.0)))?;
     let closed = legs.closes(settings.twist, tolerance);
@@ -92,7 +92,7 @@ fn simple(profile: &Chain, path: &Chain, origin: Origin, tolerance: &Tolerance) 
     }
 }
 
-fn framed(profile: &Chain, path: &Chain, settings: &Settings, tolerance: &Tolerance) -> Result<Surface> {
+fn framed(profile: &Chain, path: &Chain, settings: &AlongSettings, tolerance: &Tolerance) -> Result<Surface> {
     let origin = settings.origin;
     let mut legs = Legs::new(path, settings.twist, tolerance)?;
     let turn = legs.mitred()?;
@@ -107,7 +107,7 @@ fn framed(profile: &Chain, path: &Chain, settings: &Settings, tolerance: &Tolera
 pub fn moved_by(
     profile: &Chain,
     path: &Chain,
-    settings: &Settings,
+    settings: &AlongSettings,
     turn: &mut dyn FnMut(f64) -> DMat3,
     tolerance: &Tolerance,
 ) -> Result<(Surface, Vec<Fault>)> {

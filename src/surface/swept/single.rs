@@ -7,7 +7,7 @@ use crate::base::tolerance::{PARALLEL, Tolerance};
 use crate::geometry::curves::curve::Shape;
 use crate::network::Chain;
 use crate::surface::core::surface::Surface;
-use crate::surface::swept::along::{Settings, along, moved_by};
+use crate::surface::swept::along::{AlongSettings, along, moved_by};
 use crate::surface::swept::laws::{Law, Main, check_section, plane_normal};
 use crate::surface::swept::revolve::{Axis, revolve};
 use crate::surface::swept::sections::{Guide, Section, apart};
@@ -32,7 +32,7 @@ pub fn single(section: &Chain, guide: &Chain, input: &Input, tolerance: &Toleran
     if input.law != Law::Synchronized {
         check_section(section, &main.station(0.0), input.law, (section, guide), tolerance)?;
     }
-    let settings = Settings { twist: 0.0, round: false, origin: input.origin };
+    let settings = AlongSettings { twist: 0.0, round: false, origin: input.origin };
     let (surface, notes) = match input.law {
         Law::Normal => along(section, &path, &settings, tolerance)?,
         Law::Parallel | Law::Synchronized => moved_by(section, &path, &settings, &mut |_| DMat3::IDENTITY, tolerance)?,

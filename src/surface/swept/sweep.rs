@@ -23,7 +23,7 @@ use crate::surface::shapes::weights::{BlendAxis, Rule};
 use crate::surface::swept::laws::Law;
 use crate::surface::swept::sections::Guide;
 use crate::surface::swept::single::single;
-use crate::surface::swept::sweep_input::{Input, Method};
+use crate::surface::swept::sweep_input::{Input, NetMethod};
 use crate::surface::swept::sweep_net::{SweepNet, net};
 
 /// The surface through all sections and guides; u runs along the main guide, v along the sections. With notes and warnings.
@@ -83,11 +83,11 @@ pub(crate) fn surface(net: SweepNet, input: &Input, tolerance: &Tolerance) -> Re
     let chains: Vec<Chain> = input.sections.iter().chain(input.guides).cloned().collect();
     let flow = phrase(poles, net.closed);
     let (made, more) = match input.method {
-        Method::Gordon => {
+        NetMethod::Gordon => {
             let named = Named { origin: input.origin, kind: SurfaceKind::Sweep, flow, chains };
             gordon(CurveNet { along_u, along_v, nodes: (nodes_u, nodes_v), closed: net.closed }, named, tolerance)
         }
-        Method::Local => local(
+        NetMethod::Local => local(
             along_u,
             along_v,
             (nodes_u, nodes_v),

@@ -8,7 +8,7 @@ use crate::surface::swept::laws::Law;
 
 /// How the net becomes a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Method {
+pub enum NetMethod {
     /// Cubic splines through all stations and guides, smooth between all patches.
     Gordon,
     /// Each patch from its own four curves.
@@ -25,7 +25,7 @@ pub struct Input<'a> {
     /// How sections travel.
     pub law: Law,
     /// How the net becomes a surface.
-    pub method: Method,
+    pub method: NetMethod,
     /// The declaration.
     pub origin: Origin,
 }

@@ -90,7 +90,7 @@ fn mebibytes(bytes: u64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::fault::Plain;
+    use crate::base::fault::PlainWords;
 
     #[test]
     fn a_missing_file_names_its_neighbour() {
@@ -100,7 +100,7 @@ mod tests {
             similar: vec!["offsets_bow.csv".into()],
             why: String::new(),
         };
-        let report = fault.describe(&Plain);
+        let report = fault.describe(&PlainWords);
         assert_eq!(report.message, "cannot read \"bow_offsets.csv\"");
         assert_eq!(report.labels[0].1, "looked in the folder of this script");
         assert_eq!(report.help.as_deref(), Some("there is an \"offsets_bow.csv\""));

@@ -128,13 +128,13 @@ fn unusable(of: Origin, path: &str, total: usize, faces: &[Malformed], share: Op
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::fault::Plain;
+    use crate::base::fault::PlainWords;
 
     #[test]
     fn a_malformed_table_has_line_and_column() {
         let at = Malformed::at(7, 3, "`1.2.3` is no number");
         let fault = ContentFault::Malformed { of: Origin(1), path: "a.csv".into(), at };
-        let report = fault.describe(&Plain);
+        let report = fault.describe(&PlainWords);
         assert_eq!((fault.code().0, report.message.as_str()), ("E803", "\"a.csv\", line 7, column 3: `1.2.3` is no number"));
     }
 }

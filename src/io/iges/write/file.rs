@@ -5,27 +5,27 @@ use std::io::{self, Write};
 use crate::base::job;
 use crate::io::cad::defect::Defect;
 use crate::io::files::loss::Loss;
-use crate::io::iges::entity_writer::{Role, Sheet, Values, counted, real};
+use crate::io::iges::entity_writer::{EntityValues, IgesFile, Role, counted, real};
 use crate::io::iges::write::file_builder::FileBuilder;
-use crate::io::iges::write::things::{Scale, Shown, Thing};
+use crate::io::iges::write::things::{IgesScale, IgesShape, IgesThing};
 
 /// Flag and name of the units that scripts know.
 const UNITS: &[(&str, i64, &str)] =
     &[("um", 9, "UM"), ("mm", 2, "MM"), ("cm", 10, "CM"), ("m", 6, "M"), ("km", 7, "KM"), ("in", 1, "INCH"), ("ft", 4, "FT")];
 
 /// Makes the file of things; fails for a thing that the format or the tolerance cannot hold, with its name.
-pub fn sheet(things: &[Thing], scale: &Scale) -> Result<Sheet, String> {
-    let mut builder = FileBuilder { sheet: Sheet::default(), scale, off: 0.0, sampled: false, left_out: Vec::new() };
-    builder.sheet.layers(things.iter().flat_map(Thing::all_layers));
+pub fn sheet(things: &[IgesThing], scale: &IgesScale) -> Result<IgesFile, String> {
+    let mut builder = FileBuilder { sheet: IgesFile::default(), scale, off: 0.0, sampled: false, left_out: Vec::new() };
+    builder.sheet.layers(things.iter().flat_map(IgesThing::all_layers));
     builder.sheet.keep(things.iter().flat_map(|thing| [thing.name.as_str(), thing.group.as_str()]));
     let mut groups: Vec<(&str, Vec<u32>)> = Vec::new();
     for thing in things {
         job::poll();
         let made = match &thing.shown {
-            Shown::Point(p) => Ok(builder.sheet.add(116, 0, Role::Free, Values::new().point(*p / scale.model).int(0))),
-            Shown::Curve(chain) => chain.to_curve().map_err(Defect::from).and_then(|curve| builder.curve(&curve, Role::Free, true)),
-            Shown::Surface(surface) => builder.surface(surface),
-            Shown::Faces(faces) => builder.bodies(thing, faces),
+            IgesShape::Point(p) => Ok(builder.sheet.add(116, 0, Role::Free, EntityValues::new().point(*p / scale.model).int(0))),
+            IgesShape::Curve(chain) => chain.to_curve().map_err(Defect::from).and_then(|curve| builder.curve(&curve, Role::Free, true)),
+            IgesShape::Surface(surface) => builder.surface(surface),
+            IgesShape::Faces(faces) => builder.bodies(thing, faces),
         };
         let d = made.map_err(|Defect(why)| if thing.name.is_empty() { why } else { format!("`{}`: {why}", thing.name) })?;
         if !thing.name.is_empty() {
@@ -44,7 +44,7 @@ pub fn sheet(things: &[Thing], scale: &Scale) -> Result<Sheet, String> {
         }
     }
     for (name, members) in groups {
-        let d = builder.sheet.add(402, 7, Role::Free, Values::new().int(members.len() as u32).ints(members));
+        let d = builder.sheet.add(402, 7, Role::Free, EntityValues::new().int(members.len() as u32).ints(members));
         builder.sheet.name(d, name);
     }
     if builder.off > 0.0 {
@@ -60,7 +60,7 @@ pub fn sheet(things: &[Thing], scale: &Scale) -> Result<Sheet, String> {
 }
 
 /// Writes a file; `name` stands in its head. Returns what the format has no place for.
-pub fn write(sheet: &Sheet, name: &str, scale: &Scale, out: &mut dyn Write) -> io::Result<Vec<Loss>> {
+pub fn write(sheet: &IgesFile, name: &str, scale: &IgesScale, out: &mut dyn Write) -> io::Result<Vec<Loss>> {
     let (_, flag, unit) = UNITS.iter().find(|u| u.0 == scale.unit).copied().unwrap_or(("", 3, scale.unit));
     let file = real(scale.tolerance.point / scale.model);
     let program = concat!("loft ", env!("CARGO_PKG_VERSION"));

@@ -24,4 +24,4 @@ mod things;
 mod trimmed;
 
 pub use crate::io::iges::write::file::{sheet, write};
-pub use crate::io::iges::write::things::{Scale, Shown, Thing};
+pub use crate::io::iges::write::things::{IgesScale, IgesShape, IgesThing};

@@ -17,9 +17,9 @@ use crate::io::cad::bodies::{Bodies, Faces};
 use crate::io::cad::control_nets::{NetBorder, borders};
 use crate::io::cad::defect::{Defect, defect};
 use crate::io::cad::elementary_surface::Ground;
-use crate::io::iges::entity_writer::{Role, Values};
+use crate::io::iges::entity_writer::{EntityValues, Role};
 use crate::io::iges::write::file_builder::FileBuilder;
-use crate::io::iges::write::things::Thing;
+use crate::io::iges::write::things::IgesThing;
 use crate::model::body::BodyLoop;
 
 /// Places along an edge that are compared with a border of a net.
@@ -49,7 +49,7 @@ struct Ends {
 
 impl FileBuilder<'_> {
     /// The bodies of a thing; several are a group.
-    pub(super) fn bodies(&mut self, thing: &Thing, faces: &Faces) -> Result<u32, Defect> {
+    pub(super) fn bodies(&mut self, thing: &IgesThing, faces: &Faces) -> Result<u32, Defect> {
         let bodies = faces.bodies(&self.scale.tolerance)?;
         self.off = self.off.max(bodies.off.0);
         self.sampled |= bodies.off.1;
@@ -60,7 +60,7 @@ impl FileBuilder<'_> {
         for solid in &solids {
             let skins: Vec<usize> = std::iter::once(solid.outer).chain(solid.voids.iter().copied()).collect();
             let shells = self.shells(&bodies, &skins, Role::ShellOfSolid)?;
-            let values = Values::new().int(shells[0]).int(1).int(shells.len() as u32 - 1);
+            let values = EntityValues::new().int(shells[0]).int(1).int(shells.len() as u32 - 1);
             // Faces of cavities look into them, out of the material.
             let values = shells[1..].iter().fold(values, |values, void| values.int(*void).int(1));
             let solid = self.sheet.add(186, 0, Role::Body, values);
@@ -79,7 +79,7 @@ impl FileBuilder<'_> {
                 }
                 self.sheet.put_on(*body, &thing.layers);
             }
-            return Ok(self.sheet.add(402, 7, Role::Free, Values::new().int(n as u32).ints(made)));
+            return Ok(self.sheet.add(402, 7, Role::Free, EntityValues::new().int(n as u32).ints(made)));
         };
         Ok(one)
     }
@@ -99,7 +99,7 @@ impl FileBuilder<'_> {
         let lists = self.lists(bodies, skins)?;
         let mut shells = Vec::with_capacity(skins.len());
         for skin in skins.iter().map(|k| &bodies.body.skins[*k]) {
-            let mut values = Values::new().int(skin.faces.len() as u32);
+            let mut values = EntityValues::new().int(skin.faces.len() as u32);
             for face in &skin.faces {
                 job::poll();
                 let made = self.face(bodies, *face, &lists)?;
@@ -121,9 +121,10 @@ impl FileBuilder<'_> {
         let placed = |all: &[usize]| all.iter().enumerate().map(|(place, k)| (*k, place as u32 + 1)).collect::<BTreeMap<usize, u32>>();
         let place_of = placed(&vertices);
         let scale = self.scale.model;
-        let values = vertices.iter().fold(Values::new().int(vertices.len() as u32), |values, k| values.point(bodies.vertices[*k] / scale));
+        let values =
+            vertices.iter().fold(EntityValues::new().int(vertices.len() as u32), |values, k| values.point(bodies.vertices[*k] / scale));
         let list = self.sheet.add(502, 1, Role::Part, values);
-        let mut values = Values::new().int(edges.len() as u32);
+        let mut values = EntityValues::new().int(edges.len() as u32);
         for k in &edges {
             let curve = bodies.curves[*k].as_ref().ok_or_else(|| defect("an edge of one of its faces has no curve"))?;
             let curve = self.piece(curve, Role::Part, true)?;
@@ -146,20 +147,20 @@ impl FileBuilder<'_> {
                 false => around.iter().rev().map(|(edge, against)| (*edge, !against)).collect(),
             };
             let steps = steps(bodies, &ends, &around, lists, &self.scale.tolerance);
-            let mut values = Values::new().int(steps.len() as u32);
+            let mut values = EntityValues::new().int(steps.len() as u32);
             for step in &steps {
                 values = values.int(i64::from(step.is_vertex)).ints([step.of.0, step.of.1]).int(i64::from(step.forward));
                 let Some([from, to]) = step.uv else {
                     values = values.int(0);
                     continue;
                 };
-                let line = Values::new().reals([from.x, from.y, 0.0, to.x, to.y, 0.0]);
+                let line = EntityValues::new().reals([from.x, from.y, 0.0, to.x, to.y, 0.0]);
                 // Along a border of the surface one of the parameters is constant.
                 values = values.int(1).int(1).int(self.sheet.add(110, 0, Role::InUv, line));
             }
             loops.push(self.sheet.add(508, 1, Role::Part, values));
         }
-        let values = Values::new().int(surface).int(loops.len() as u32).int(1).ints(loops);
+        let values = EntityValues::new().int(surface).int(loops.len() as u32).int(1).ints(loops);
         let face = self.sheet.add(510, 1, Role::Part, values);
         let name = bodies.name(k);
         if !name.is_empty() {

@@ -3,7 +3,7 @@
 use crate::base::tolerance::Tolerance;
 use crate::geometry::shapes::nurbs::projected;
 use crate::io::cad::elementary_surface::Ground;
-use crate::io::iges::entity_writer::{Role, Values};
+use crate::io::iges::entity_writer::{EntityValues, Role};
 use crate::io::iges::write::file_builder::FileBuilder;
 use crate::surface::analysis::elementary::{Elementary, Form};
 use crate::surface::{NetForm, NurbsSurface, Off};
@@ -21,7 +21,7 @@ impl FileBuilder<'_> {
         let last = |n: usize| n as i64 - 1;
         let ends = |knots: &[f64]| [knots[0], knots[knots.len() - 1]];
         let range = [ends(&net.knots.0), ends(&net.knots.1)].concat();
-        let values = Values::new().int(last(net.counts.0)).int(last(net.counts.1)).int(net.degree.0 as i64).int(net.degree.1 as i64);
+        let values = EntityValues::new().int(last(net.counts.0)).int(last(net.counts.1)).int(net.degree.0 as i64).int(net.degree.1 as i64);
         let values = values.int(closed[0]).int(closed[1]).int(i64::from(polynomial)).int(0).int(0);
         let values = values.reals(net.knots.0.iter().copied()).reals(net.knots.1.iter().copied());
         let values = values.reals(net.poles.iter().map(|q| q.w));
@@ -47,13 +47,13 @@ impl FileBuilder<'_> {
             Form::Sphere { axis, radius } => (196, axis.about, axis.direction, vec![radius / scale]),
             Form::Torus { axis, major, minor } => (198, axis.about, axis.direction, vec![major / scale, minor / scale]),
         };
-        let at = self.sheet.add(116, 0, Role::Place, Values::new().point(at / scale).int(0));
+        let at = self.sheet.add(116, 0, Role::Place, EntityValues::new().point(at / scale).int(0));
         let [axis, reference] =
-            [axis, found.reference].map(|way| self.sheet.add(123, 0, Role::Direction, Values::new().reals(way.to_array())));
+            [axis, found.reference].map(|way| self.sheet.add(123, 0, Role::Direction, EntityValues::new().reals(way.to_array())));
         // Of a sphere the radius stands before the axis.
         let values = match kind {
-            196 => Values::new().int(at).reals(sizes).int(axis),
-            _ => Values::new().int(at).int(axis).reals(sizes),
+            196 => EntityValues::new().int(at).reals(sizes).int(axis),
+            _ => EntityValues::new().int(at).int(axis).reals(sizes),
         };
         self.sheet.add(kind, 1, Role::Part, values.int(reference))
     }

@@ -9,7 +9,7 @@ use crate::surface::Surface;
 
 /// One thing to write.
 #[derive(Clone, Debug)]
-pub enum Shown {
+pub enum IgesShape {
     /// A point, model units.
     Point(DVec3),
     /// A curve.
@@ -22,7 +22,7 @@ pub enum Shown {
 
 /// Things with their names; those under one group name become a group.
 #[derive(Clone, Debug)]
-pub struct Thing {
+pub struct IgesThing {
     /// Name as declared, empty for none.
     pub name: String,
     /// The shell or group it belongs to, empty for none.
@@ -32,20 +32,20 @@ pub struct Thing {
     /// Red, green and blue from 0 to 1, where it has a colour.
     pub color: Option<[f64; 3]>,
     /// What it is.
-    pub shown: Shown,
+    pub shown: IgesShape,
 }
 
-impl Thing {
+impl IgesThing {
     /// Layers that it or a face of it is on.
     pub(super) fn all_layers(&self) -> impl Iterator<Item = &str> {
-        let faces = if let Shown::Faces(faces) = &self.shown { Some(faces.layers.values().flatten()) } else { None };
+        let faces = if let IgesShape::Faces(faces) = &self.shown { Some(faces.layers.values().flatten()) } else { None };
         self.layers.iter().chain(faces.into_iter().flatten()).map(String::as_str)
     }
 }
 
 /// Unit and accuracy of a file.
 #[derive(Clone, Copy, Debug)]
-pub struct Scale {
+pub struct IgesScale {
     /// Name of the file's unit as scripts have it.
     pub unit: &'static str,
     /// Model units in one unit of the file.

@@ -13,7 +13,7 @@ use crate::io::cad::base_surface::Base;
 use crate::io::cad::curve_on_surface::{composed, fitted};
 use crate::io::cad::curves::transformed;
 use crate::io::cad::defect::{Defect, defect};
-use crate::io::iges::entity_writer::{Role, Values};
+use crate::io::iges::entity_writer::{EntityValues, Role};
 use crate::io::iges::write::file_builder::FileBuilder;
 use crate::surface::{Domain, NurbsSurface, Side, Surface};
 
@@ -48,14 +48,14 @@ impl FileBuilder<'_> {
             let uvs = in_uv.iter().map(|c| self.curve(c, Role::InUv, false)).collect::<Result<Vec<u32>, Defect>>()?;
             let mut row = |list: Vec<u32>, role| match list.len() as u32 {
                 0 => 0,
-                n => self.sheet.add(102, 0, role, Values::new().int(n).ints(list)),
+                n => self.sheet.add(102, 0, role, EntityValues::new().int(n).ints(list)),
             };
             let (uv, space) = (row(uvs, Role::InUv), row(spaces, Role::Part));
             let preferred = if uv == 0 { 2 } else { 3 };
-            borders.push(self.sheet.add(142, 0, Role::InUv, Values::new().int(1).ints([base, uv, space]).int(preferred)));
+            borders.push(self.sheet.add(142, 0, Role::InUv, EntityValues::new().int(1).ints([base, uv, space]).int(preferred)));
         }
         let [outer, holes @ ..] = borders.as_slice() else { return Err(defect("it has no border")) };
-        let values = Values::new().int(base).int(1).int(holes.len() as u32).int(*outer).ints(holes.iter().copied());
+        let values = EntityValues::new().int(base).int(1).int(holes.len() as u32).int(*outer).ints(holes.iter().copied());
         Ok(self.sheet.add(144, 0, Role::Free, values))
     }
 

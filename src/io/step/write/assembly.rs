@@ -6,7 +6,7 @@ use crate::base::tolerance::{PARALLEL, Tolerance};
 use crate::geometry::Motion;
 use crate::io::cad::assembly::Node;
 use crate::io::cad::bodies::Faces;
-use crate::io::step::write::things::{Shown, Thing};
+use crate::io::step::write::things::{StepShape, StepThing};
 use crate::model::SurfaceId;
 use crate::surface::{Side, Surface};
 
@@ -45,7 +45,7 @@ pub struct Occurrence {
 pub type Repaint = ([f64; 3], [f64; 3]);
 
 /// The products of things, parts before what they stand in; the last one is all of it, under `name` unless one product of the tree is.
-pub fn products(things: &[Thing], nodes: &[Node], name: &str, tolerance: &Tolerance) -> Vec<Product> {
+pub fn products(things: &[StepThing], nodes: &[Node], name: &str, tolerance: &Tolerance) -> Vec<Product> {
     let still = Motion::translation(DVec3::ZERO);
     let all = |things: Vec<usize>| Product { name: name.to_owned(), things, parts: Vec::new(), motion: still, places: Vec::new() };
     let mut holding: Vec<usize> = things.iter().filter_map(|thing| thing.node).collect();
@@ -99,7 +99,7 @@ pub fn uses(products: &[Product]) -> Vec<usize> {
 }
 
 struct Tree<'t> {
-    things: &'t [Thing],
+    things: &'t [StepThing],
     nodes: &'t [Node],
     tolerance: &'t Tolerance,
     /// Things of each node by itself.
@@ -149,12 +149,12 @@ impl Tree<'_> {
     }
 
     /// Whether a thing is another one moved, on the same layers.
-    fn is_copy(&self, a: &Thing, b: &Thing, by: &Motion) -> bool {
+    fn is_copy(&self, a: &StepThing, b: &StepThing, by: &Motion) -> bool {
         let near = |p: DVec3, q: DVec3| self.tolerance.same_point(by.point(p), q);
         let same_shape = match (&a.shown, &b.shown) {
-            (Shown::Point(p), Shown::Point(q)) => near(*p, *q),
-            (Shown::Curve(a), Shown::Curve(b)) => PROBES.iter().all(|(f, _)| near(a.point(*f), b.point(*f))),
-            (Shown::Faces(a), Shown::Faces(b)) => is_copy(a, b, &near),
+            (StepShape::Point(p), StepShape::Point(q)) => near(*p, *q),
+            (StepShape::Curve(a), StepShape::Curve(b)) => PROBES.iter().all(|(f, _)| near(a.point(*f), b.point(*f))),
+            (StepShape::Faces(a), StepShape::Faces(b)) => is_copy(a, b, &near),
             _ => false,
         };
         same_shape && a.layers == b.layers
@@ -165,11 +165,11 @@ impl Tree<'_> {
 type Pair = (Option<[f64; 3]>, Option<[f64; 3]>);
 
 /// The one colour that is another one in copies of things; none where more than that differs.
-fn repainted<'t>(pairs: impl Iterator<Item = (&'t Thing, &'t Thing)>) -> Option<Option<Repaint>> {
+fn repainted<'t>(pairs: impl Iterator<Item = (&'t StepThing, &'t StepThing)>) -> Option<Option<Repaint>> {
     let mut colors: Vec<Pair> = Vec::new();
     for (a, b) in pairs {
         colors.push((a.color, b.color));
-        if let (Shown::Faces(a), Shown::Faces(b)) = (&a.shown, &b.shown) {
+        if let (StepShape::Faces(a), StepShape::Faces(b)) = (&a.shown, &b.shown) {
             let faces = a.shell.surfaces.iter().zip(&b.shell.surfaces);
             colors.extend(faces.map(|(one, other)| (a.colors.get(&one.0).copied(), b.colors.get(&other.0).copied())));
         }

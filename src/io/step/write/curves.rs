@@ -6,8 +6,8 @@ use crate::base::fault::Result;
 use crate::geometry::curves::curve::Shape;
 use crate::geometry::shapes::arc::EllipticArc;
 use crate::geometry::{Curve, Nurbs};
-use crate::io::step::write::records::{Id, Records, Values};
-use crate::io::step::write::things::Scale;
+use crate::io::step::write::records::{Id, RecordValues, SectionRecords};
+use crate::io::step::write::things::StepScale;
 
 /// The geometry of an edge: without ends where it is a line or a circle.
 #[derive(Debug)]
@@ -22,7 +22,7 @@ pub enum Along {
 
 impl Along {
     /// Of the curve of an edge.
-    pub fn of(curve: &Curve, scale: &Scale) -> Result<Self> {
+    pub fn of(curve: &Curve, scale: &StepScale) -> Result<Self> {
         if let Some([a, b]) = corners(curve).as_deref() {
             return Ok(Self::Line(*a, *b));
         }
@@ -38,7 +38,7 @@ impl Along {
     }
 
     /// Writes it.
-    pub fn put(&self, records: &mut Records, scale: &Scale) -> Id {
+    pub fn put(&self, records: &mut SectionRecords, scale: &StepScale) -> Id {
         match self {
             Self::Line(a, b) => {
                 let (at, way) = (records.point(*a / scale.model), records.direction((*b - *a).normalize_or_zero()));
@@ -60,7 +60,7 @@ impl Along {
     }
 
     /// Parameters between which its curvature is continuous, ascending; the first and the last are its ends.
-    pub fn knots(&self, scale: &Scale) -> Vec<f64> {
+    pub fn knots(&self, scale: &StepScale) -> Vec<f64> {
         match self {
             Self::Line(a, b) => vec![0.0, a.distance(*b) / scale.model],
             Self::Circle(arc) => vec![0.0, arc.sweep],
@@ -73,7 +73,7 @@ impl Along {
     }
 
     /// The point at a parameter, model units.
-    pub fn point(&self, t: f64, scale: &Scale) -> DVec3 {
+    pub fn point(&self, t: f64, scale: &StepScale) -> DVec3 {
         match self {
             Self::Line(a, b) => *a + (*b - *a).normalize_or_zero() * (t * scale.model),
             Self::Circle(arc) => arc.jet(t).p,
@@ -83,7 +83,7 @@ impl Along {
 }
 
 /// The whole circle of an arc; its angle is 0 where the arc begins.
-fn circle(records: &mut Records, arc: &EllipticArc, name: &str, scale: &Scale) -> Id {
+fn circle(records: &mut SectionRecords, arc: &EllipticArc, name: &str, scale: &StepScale) -> Id {
     let x = arc.u.normalize_or_zero();
     let frame = records.frame(arc.center / scale.model, arc.u.cross(arc.v).normalize_or_zero(), x);
     let radius = arc.u.length() / scale.model;
@@ -93,7 +93,7 @@ fn circle(records: &mut Records, arc: &EllipticArc, name: &str, scale: &Scale) -
 }
 
 /// A curve with its ends, under a name.
-pub fn bounded(records: &mut Records, curve: &Curve, name: &str, scale: &Scale) -> Result<Id> {
+pub fn bounded(records: &mut SectionRecords, curve: &Curve, name: &str, scale: &StepScale) -> Result<Id> {
     if let Some(points) = corners(curve) {
         let points: Vec<Id> = points.into_iter().map(|p| records.point(p / scale.model)).collect();
         return Ok(records.put("POLYLINE", |v| {
@@ -117,7 +117,7 @@ pub fn bounded(records: &mut Records, curve: &Curve, name: &str, scale: &Scale) 
         Shape::Arc(arc) if arc.radius.is_some() && arc.sweep >= std::f64::consts::TAU => Ok(circle(records, arc, name, scale)),
         Shape::Arc(arc) if arc.radius.is_some() => {
             let basis = circle(records, arc, "", scale);
-            let end = |v: &mut Values, at: f64| {
+            let end = |v: &mut RecordValues, at: f64| {
                 v.list(|v| {
                     v.typed("PARAMETER_VALUE", at);
                 });
@@ -154,7 +154,7 @@ pub fn knots(all: &[f64]) -> (Vec<usize>, Vec<f64>) {
 }
 
 /// A B-spline, rational where its weights differ.
-pub fn spline(records: &mut Records, curve: &Nurbs, name: &str, scale: &Scale) -> Id {
+pub fn spline(records: &mut SectionRecords, curve: &Nurbs, name: &str, scale: &StepScale) -> Id {
     let (a, b) = curve.domain();
     let n = curve.knots.len();
     let is_full = curve.knots[0] == a && curve.knots[n - 1] == b;
@@ -170,13 +170,13 @@ pub fn spline(records: &mut Records, curve: &Nurbs, name: &str, scale: &Scale) -
 }
 
 /// A B-spline whose control points are written, in space or in the parameters of a surface.
-pub fn spline_of(records: &mut Records, curve: &Nurbs, points: &[Id], name: &str) -> Id {
+pub fn spline_of(records: &mut SectionRecords, curve: &Nurbs, points: &[Id], name: &str) -> Id {
     let closed = curve.pole(0) == curve.pole(curve.poles.len() - 1);
     let (times, places) = knots(&curve.knots);
-    let shape = |v: &mut Values| {
+    let shape = |v: &mut RecordValues| {
         v.int(curve.degree).ids(points).word(".UNSPECIFIED.").flag(closed).word(".F.");
     };
-    let parameters = |v: &mut Values| {
+    let parameters = |v: &mut RecordValues| {
         v.ints(times.iter().copied()).reals(places.iter().copied()).word(".UNSPECIFIED.");
     };
     if curve.polynomial {

@@ -9,16 +9,16 @@ use crate::base::job;
 use crate::geometry::Motion;
 use crate::io::cad::assembly::Node;
 use crate::io::cad::defect::Defect;
-use crate::io::step::write::product::{self, Product, ShapeRecords};
-use crate::io::step::write::records::{self, Id, Records};
+use crate::io::step::write::product::{self, ProductRecords, ShapeRecords};
+use crate::io::step::write::records::{self, Id, SectionRecords};
 use crate::io::step::write::styles::{self, Painted};
-use crate::io::step::write::things::{Setup, Shown, Thing};
+use crate::io::step::write::things::{Setup, StepShape, StepThing};
 use crate::io::step::write::{assembly, curves, topology, validation};
 
 /// A file ready to be written.
 #[derive(Clone, Debug)]
-pub struct Sheet {
-    records: Records,
+pub struct StepFile {
+    records: SectionRecords,
     remark: Option<String>,
     /// What is not in the file, in words.
     pub left_out: Vec<String>,
@@ -26,8 +26,8 @@ pub struct Sheet {
 
 /// Makes the file of things; `name` is its product's, but one thing names its own, and an imported assembly, given by its nodes, has
 /// its products. Fails for a thing that the format or the tolerance cannot hold, with its name.
-pub fn sheet(things: &[Thing], nodes: &[Node], name: &str, setup: &Setup) -> Result<Sheet, String> {
-    let mut records = Records::default();
+pub fn sheet(things: &[StepThing], nodes: &[Node], name: &str, setup: &Setup) -> Result<StepFile, String> {
+    let mut records = SectionRecords::default();
     let name = match things {
         [one] if !one.name.is_empty() => one.name.as_str(),
         _ => name,
@@ -37,7 +37,7 @@ pub fn sheet(things: &[Thing], nodes: &[Node], name: &str, setup: &Setup) -> Res
     let tree = assembly::products(things, nodes, name, &setup.scale.tolerance);
     let uses = assembly::uses(&tree);
     let mut content = FileContent::default();
-    let mut shapes: Vec<(Product, ShapeRecords)> = Vec::with_capacity(tree.len());
+    let mut shapes: Vec<(ProductRecords, ShapeRecords)> = Vec::with_capacity(tree.len());
     let mut occurrences = 0;
     for (own, uses) in tree.iter().zip(uses) {
         let whole = product::product(&mut records, application, &own.name);
@@ -73,7 +73,7 @@ pub fn sheet(things: &[Thing], nodes: &[Node], name: &str, setup: &Setup) -> Res
         let how = if off.1 { ", as sampled" } else { "" };
         format!("Surfaces that are no B-splines are off by at most {:.2e} {}{how}", off.0 / setup.scale.model, setup.unit)
     });
-    Ok(Sheet { records, remark, left_out: content.left_out })
+    Ok(StepFile { records, remark, left_out: content.left_out })
 }
 
 /// What of all products stands behind them in the file, or in words.
@@ -102,8 +102,8 @@ impl FileContent {
     /// The things of a product, which stands in the whole so many times.
     fn put(
         &mut self,
-        records: &mut Records,
-        things: &[Thing],
+        records: &mut SectionRecords,
+        things: &[StepThing],
         product: &assembly::Product,
         uses: usize,
         setup: &Setup,
@@ -172,17 +172,17 @@ struct WrittenThing {
     thin_area: f64,
 }
 
-fn put(records: &mut Records, thing: &Thing, name: &str, setup: &Setup) -> Result<WrittenThing, Defect> {
+fn put(records: &mut SectionRecords, thing: &StepThing, name: &str, setup: &Setup) -> Result<WrittenThing, Defect> {
     let scale = &setup.scale;
     let geometry = match &thing.shown {
-        Shown::Faces(faces) => {
+        StepShape::Faces(faces) => {
             let topology::WrittenFaces { solids, sheets, off, painted, layered, left_out, thin_area } =
                 topology::put(faces, records, name, scale)?;
             let left_out = left_out.into_iter().collect();
             return Ok(WrittenThing { solids, sheets, off, painted, layered, left_out, thin_area, ..WrittenThing::default() });
         }
-        Shown::Point(p) => records.point(*p / scale.model),
-        Shown::Curve(chain) => curves::bounded(records, &chain.to_curve()?, name, scale)?,
+        StepShape::Point(p) => records.point(*p / scale.model),
+        StepShape::Curve(chain) => curves::bounded(records, &chain.to_curve()?, name, scale)?,
     };
     let set = records.put("GEOMETRIC_CURVE_SET", |v| {
         v.text(name).ids(&[geometry]);
@@ -192,7 +192,7 @@ fn put(records: &mut Records, thing: &Thing, name: &str, setup: &Setup) -> Resul
 }
 
 /// Writes a file; `name` stands in its head.
-pub fn write(sheet: &Sheet, name: &str, setup: &Setup, out: &mut dyn Write) -> io::Result<()> {
+pub fn write(sheet: &StepFile, name: &str, setup: &Setup, out: &mut dyn Write) -> io::Result<()> {
     let quoted = |text: &str| {
         let mut bytes = Vec::new();
         records::push_text(&mut bytes, text);

@@ -22,6 +22,6 @@ mod things;
 mod topology;
 mod validation;
 
-pub use crate::io::step::write::file::{Sheet, sheet, write};
+pub use crate::io::step::write::file::{StepFile, sheet, write};
 pub use crate::io::step::write::product::Schema;
-pub use crate::io::step::write::things::{Measured, Scale, Setup, Shown, Thing};
+pub use crate::io::step::write::things::{Measured, Setup, StepScale, StepShape, StepThing};

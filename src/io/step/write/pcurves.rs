@@ -12,8 +12,8 @@ use crate::base::tolerance::{NUDGE, POLE_STEP, Tolerance};
 use crate::geometry::Nurbs;
 use crate::io::cad::curve_on_surface::fitted;
 use crate::io::step::write::curves::{Along, spline_of};
-use crate::io::step::write::records::{Id, Records};
-use crate::io::step::write::things::Scale;
+use crate::io::step::write::records::{Id, SectionRecords};
+use crate::io::step::write::things::StepScale;
 use crate::surface::analysis::elementary::{Elementary, Form};
 
 /// Pieces of a smooth stretch of an edge to begin with, each of which gets a spline of its own.
@@ -28,10 +28,10 @@ const MOST: usize = 1_000;
 const FINE: f64 = 0.1;
 
 /// Puts an edge in the parameters of a surface; `None` on a plane, along a constant parameter and where no curve stays near.
-pub fn put(records: &mut Records, surface: Id, found: &Elementary, edge: &Along, scale: &Scale) -> Option<Id> {
+pub fn put(records: &mut SectionRecords, surface: Id, found: &Elementary, edge: &Along, scale: &StepScale) -> Option<Id> {
     let frame = ParameterFrame::of(found)?;
     let curve = frame.within(edge, scale)?;
-    let point = |records: &mut Records, p: DVec3| {
+    let point = |records: &mut SectionRecords, p: DVec3| {
         records.put("CARTESIAN_POINT", |v| {
             v.text("").reals([p.x, p.y / frame.unit(scale)]);
         })
@@ -75,7 +75,7 @@ impl<'e> ParameterFrame<'e> {
     }
 
     /// Model units in one of v.
-    fn unit(&self, scale: &Scale) -> f64 {
+    fn unit(&self, scale: &StepScale) -> f64 {
         if matches!(self.form, Form::Cylinder { .. } | Form::Cone { .. }) { scale.model } else { 1.0 }
     }
 
@@ -111,7 +111,7 @@ impl<'e> ParameterFrame<'e> {
     }
 
     /// The curve (u, v, 0) of an edge by the edge's own parameter.
-    fn within(&self, edge: &Along, scale: &Scale) -> Option<Nurbs> {
+    fn within(&self, edge: &Along, scale: &StepScale) -> Option<Nurbs> {
         let known = self.stations(edge, scale)?;
         let inner = known.iter().filter(|s| !self.is_pole(s.2, &scale.tolerance));
         if edge.is_conic() && (is_constant(inner.clone().map(|s| s.1.x)) || is_constant(inner.map(|s| s.1.y))) {
@@ -142,7 +142,7 @@ impl<'e> ParameterFrame<'e> {
 
     /// Parameters of an edge with their (u, v), which go on over the seam, and points: so near to each other that the edge turns little
     /// between them. `None` where it leaps, through a pole.
-    fn stations(&self, edge: &Along, scale: &Scale) -> Option<Vec<(f64, DVec2, DVec3)>> {
+    fn stations(&self, edge: &Along, scale: &StepScale) -> Option<Vec<(f64, DVec2, DVec3)>> {
         let of = |t: f64| {
             let p = edge.point(t, scale);
             (t, self.uv(p), p)

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::geometry::Motion;
-use crate::io::step::write::records::{Id, Records, Values};
+use crate::io::step::write::records::{Id, RecordValues, SectionRecords};
 
 /// An application protocol.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -69,7 +69,7 @@ const METRES: &[(&str, &str)] = &[("um", ".MICRO."), ("mm", ".MILLI."), ("cm", "
 /// Units of scripts that are so many millimetres.
 const CONVERTED: &[(&str, &str, f64)] = &[("in", "INCH", 25.4), ("ft", "FOOT", 304.8)];
 
-fn metre(records: &mut Records, prefix: &str) -> Id {
+fn metre(records: &mut SectionRecords, prefix: &str) -> Id {
     records.put_complex(|v| {
         v.part("LENGTH_UNIT", |_| {});
         v.part("NAMED_UNIT", |v| {
@@ -81,7 +81,7 @@ fn metre(records: &mut Records, prefix: &str) -> Id {
     })
 }
 
-fn length_unit(records: &mut Records, unit: &str) -> Id {
+fn length_unit(records: &mut SectionRecords, unit: &str) -> Id {
     if let Some((_, name, size)) = CONVERTED.iter().find(|u| u.0 == unit) {
         let dimensions = records.put("DIMENSIONAL_EXPONENTS", |v| {
             [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0].into_iter().for_each(|x| {
@@ -105,12 +105,12 @@ fn length_unit(records: &mut Records, unit: &str) -> Id {
     metre(records, METRES.iter().find(|u| u.0 == unit).map_or(".MILLI.", |u| u.1))
 }
 
-fn angle_unit(records: &mut Records, kind: &str, name: &str) -> Id {
+fn angle_unit(records: &mut SectionRecords, kind: &str, name: &str) -> Id {
     records.put_complex(|v| {
         v.part("NAMED_UNIT", |v| {
             v.word("*");
         });
-        let si = |v: &mut Values| {
+        let si = |v: &mut RecordValues| {
             v.word("$").word(name);
         };
         // Types of one record stand in the order of their letters.
@@ -125,7 +125,7 @@ fn angle_unit(records: &mut Records, kind: &str, name: &str) -> Id {
 }
 
 /// Units and accuracy; `accuracy` in units of the file.
-pub fn context(records: &mut Records, unit: &str, accuracy: f64) -> Context {
+pub fn context(records: &mut SectionRecords, unit: &str, accuracy: f64) -> Context {
     let length = length_unit(records, unit);
     let plane = angle_unit(records, "PLANE_ANGLE_UNIT", ".RADIAN.");
     let solid = angle_unit(records, "SOLID_ANGLE_UNIT", ".STERADIAN.");
@@ -151,7 +151,7 @@ pub fn context(records: &mut Records, unit: &str, accuracy: f64) -> Context {
 
 /// A product as records.
 #[derive(Clone, Copy, Debug)]
-pub struct Product {
+pub struct ProductRecords {
     /// Its definition.
     definition: Id,
     /// The definition of its shape.
@@ -159,7 +159,7 @@ pub struct Product {
 }
 
 /// The application that all products of a file belong to.
-pub fn application(records: &mut Records, schema: Schema) -> Id {
+pub fn application(records: &mut SectionRecords, schema: Schema) -> Id {
     let (application, protocol, year) = schema.application();
     let context = records.put("APPLICATION_CONTEXT", |v| {
         v.text(application);
@@ -171,7 +171,7 @@ pub fn application(records: &mut Records, schema: Schema) -> Id {
 }
 
 /// A product by its name.
-pub fn product(records: &mut Records, application: Id, name: &str) -> Product {
+pub fn product(records: &mut SectionRecords, application: Id, name: &str) -> ProductRecords {
     let mechanical = records.put("PRODUCT_CONTEXT", |v| {
         v.text("").id(application).text("mechanical");
     });
@@ -193,7 +193,7 @@ pub fn product(records: &mut Records, application: Id, name: &str) -> Product {
     let shape = records.put("PRODUCT_DEFINITION_SHAPE", |v| {
         v.text("").text("").id(definition);
     });
-    Product { definition, shape }
+    ProductRecords { definition, shape }
 }
 
 /// The shape of a product as records.
@@ -209,8 +209,8 @@ pub struct ShapeRecords {
 /// The shape of a product: one representation of everything in it, so that readers find each thing under its name. `places`, in units
 /// of the file, are those of its parts.
 pub fn shape(
-    records: &mut Records,
-    product: Product,
+    records: &mut SectionRecords,
+    product: ProductRecords,
     name: &str,
     context: Context,
     kind: &str,
@@ -232,11 +232,11 @@ pub fn shape(
 /// A product in another one, at one of the places of that; `number` tells it from all others of the file. Gives the definition of its
 /// shape there.
 pub fn occurrence(
-    records: &mut Records,
+    records: &mut SectionRecords,
     number: usize,
     name: &str,
-    part: (Product, &ShapeRecords),
-    whole: (Product, &ShapeRecords),
+    part: (ProductRecords, &ShapeRecords),
+    whole: (ProductRecords, &ShapeRecords),
     place: usize,
 ) -> Id {
     let used = records.put("NEXT_ASSEMBLY_USAGE_OCCURRENCE", |v| {
@@ -264,7 +264,7 @@ pub fn occurrence(
 }
 
 /// What a style of a product at one of its places refers to.
-pub fn place(records: &mut Records, shape: Id, whole: &ShapeRecords, place: usize, context: Context) -> Id {
+pub fn place(records: &mut SectionRecords, shape: Id, whole: &ShapeRecords, place: usize, context: Context) -> Id {
     let representation = records.put("SHAPE_REPRESENTATION", |v| {
         v.text("").ids(&[whole.places[place]]).id(context.context);
     });

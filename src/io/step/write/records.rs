@@ -11,27 +11,27 @@ pub struct Id(u32);
 
 /// Records of a data section.
 #[derive(Clone, Debug, Default)]
-pub struct Records {
+pub struct SectionRecords {
     text: Vec<u8>,
     count: u32,
     /// What transforms points and directions, lengths in units of the file.
     frame: Option<Motion>,
 }
 
-impl Records {
+impl SectionRecords {
     /// Adds a record of one type; `fill` writes its values.
-    pub fn put(&mut self, name: &str, fill: impl FnOnce(&mut Values)) -> Id {
+    pub fn put(&mut self, name: &str, fill: impl FnOnce(&mut RecordValues)) -> Id {
         let id = self.begin();
-        Values { text: &mut self.text, first: true }.part(name, fill);
+        RecordValues { text: &mut self.text, first: true }.part(name, fill);
         self.text.extend_from_slice(b";\n");
         id
     }
 
     /// Adds a record of several types; `fill` writes each as a part.
-    pub fn put_complex(&mut self, fill: impl FnOnce(&mut Values)) -> Id {
+    pub fn put_complex(&mut self, fill: impl FnOnce(&mut RecordValues)) -> Id {
         let id = self.begin();
         self.text.push(b'(');
-        fill(&mut Values { text: &mut self.text, first: true });
+        fill(&mut RecordValues { text: &mut self.text, first: true });
         self.text.extend_from_slice(b");\n");
         id
     }
@@ -76,12 +76,12 @@ impl Records {
 }
 
 /// Values of a record, parted by commas.
-pub struct Values<'t> {
+pub struct RecordValues<'t> {
     text: &'t mut Vec<u8>,
     first: bool,
 }
 
-impl Values<'_> {
+impl RecordValues<'_> {
     fn next(&mut self) {
         if !std::mem::take(&mut self.first) {
             self.text.push(b',');
@@ -89,18 +89,18 @@ impl Values<'_> {
     }
 
     /// A type with its values, within a record of several types.
-    pub fn part(&mut self, name: &str, fill: impl FnOnce(&mut Values)) {
+    pub fn part(&mut self, name: &str, fill: impl FnOnce(&mut RecordValues)) {
         self.text.extend_from_slice(name.as_bytes());
         self.text.push(b'(');
-        fill(&mut Values { text: self.text, first: true });
+        fill(&mut RecordValues { text: self.text, first: true });
         self.text.push(b')');
     }
 
     /// A list of values.
-    pub fn list(&mut self, fill: impl FnOnce(&mut Values)) -> &mut Self {
+    pub fn list(&mut self, fill: impl FnOnce(&mut RecordValues)) -> &mut Self {
         self.next();
         self.text.push(b'(');
-        fill(&mut Values { text: self.text, first: true });
+        fill(&mut RecordValues { text: self.text, first: true });
         self.text.push(b')');
         self
     }

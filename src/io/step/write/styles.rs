@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::io::step::write::product::Context;
-use crate::io::step::write::records::{Id, Records, Values};
+use crate::io::step::write::records::{Id, RecordValues, SectionRecords};
 
 /// Width of coloured curves, units of the file.
 const WIDTH: f64 = 0.1;
@@ -24,7 +24,7 @@ pub struct Painted {
 }
 
 /// Writes the styles of all that has a colour; equal ones stand once.
-pub fn put(records: &mut Records, painted: &[Painted], context: Context) {
+pub fn put(records: &mut SectionRecords, painted: &[Painted], context: Context) {
     let mut styles: Vec<([f64; 3], bool, Option<Id>, Id)> = Vec::new();
     let mut styled = Vec::with_capacity(painted.len());
     let mut of_item: BTreeMap<Id, Id> = BTreeMap::new();
@@ -55,11 +55,11 @@ pub fn put(records: &mut Records, painted: &[Painted], context: Context) {
     }
 }
 
-fn style(records: &mut Records, rgb: [f64; 3], curve: bool, at: Option<Id>) -> Id {
+fn style(records: &mut SectionRecords, rgb: [f64; 3], curve: bool, at: Option<Id>) -> Id {
     let color = records.put("COLOUR_RGB", |v| {
-        rgb.into_iter().fold(v.text(""), Values::real);
+        rgb.into_iter().fold(v.text(""), RecordValues::real);
     });
-    let mut one = |name: &str, fill: &dyn Fn(&mut Values)| records.put(name, |v| fill(v));
+    let mut one = |name: &str, fill: &dyn Fn(&mut RecordValues)| records.put(name, |v| fill(v));
     let look = if curve {
         let font = one("DRAUGHTING_PRE_DEFINED_CURVE_FONT", &|v| {
             v.text("continuous");

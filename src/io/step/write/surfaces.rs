@@ -5,20 +5,20 @@ use glam::DVec3;
 use crate::geometry::shapes::nurbs::projected;
 use crate::io::cad::elementary_surface::Ground;
 use crate::io::step::write::curves::knots;
-use crate::io::step::write::records::{Id, Records, Values};
-use crate::io::step::write::things::Scale;
+use crate::io::step::write::records::{Id, RecordValues, SectionRecords};
+use crate::io::step::write::things::StepScale;
 use crate::surface::NurbsSurface;
 use crate::surface::analysis::elementary::{Elementary, Form};
 
 /// Writes the surface.
-pub fn put(records: &mut Records, ground: &Ground, scale: &Scale) -> Id {
+pub fn put(records: &mut SectionRecords, ground: &Ground, scale: &StepScale) -> Id {
     match ground {
         Ground::Net(net, ..) => spline(records, net, scale),
         Ground::Elementary(found) => elementary(records, found, scale),
     }
 }
 
-fn elementary(records: &mut Records, found: &Elementary, scale: &Scale) -> Id {
+fn elementary(records: &mut SectionRecords, found: &Elementary, scale: &StepScale) -> Id {
     let reference = found.reference;
     let mut round = |name: &str, at: DVec3, axis: DVec3, sizes: &[f64]| {
         let frame = records.frame(at / scale.model, axis, reference);
@@ -40,16 +40,16 @@ fn elementary(records: &mut Records, found: &Elementary, scale: &Scale) -> Id {
     }
 }
 
-fn spline(records: &mut Records, net: &NurbsSurface, scale: &Scale) -> Id {
+fn spline(records: &mut SectionRecords, net: &NurbsSurface, scale: &StepScale) -> Id {
     let (nu, nv) = net.counts;
-    let point = |records: &mut Records, i: usize, j: usize| records.point(projected(net.pole(i, j)) / scale.model);
+    let point = |records: &mut SectionRecords, i: usize, j: usize| records.point(projected(net.pole(i, j)) / scale.model);
     let points: Vec<Vec<Id>> = (0..nu).map(|i| (0..nv).map(|j| point(records, i, j)).collect()).collect();
     let same =
         |a: (usize, usize), b: (usize, usize)| scale.tolerance.same_point(projected(net.pole(a.0, a.1)), projected(net.pole(b.0, b.1)));
     let closed_u = (0..nv).all(|j| same((0, j), (nu - 1, j)));
     let closed_v = (0..nu).all(|i| same((i, 0), (i, nv - 1)));
     let ((times_u, at_u), (times_v, at_v)) = (knots(&net.knots.0), knots(&net.knots.1));
-    let shape = |v: &mut Values| {
+    let shape = |v: &mut RecordValues| {
         v.int(net.degree.0).int(net.degree.1).list(|v| {
             points.iter().for_each(|row| {
                 v.ids(row);
@@ -57,7 +57,7 @@ fn spline(records: &mut Records, net: &NurbsSurface, scale: &Scale) -> Id {
         });
         v.word(".UNSPECIFIED.").flag(closed_u).flag(closed_v).word(".F.");
     };
-    let parameters = |v: &mut Values| {
+    let parameters = |v: &mut RecordValues| {
         v.ints(times_u.iter().copied()).ints(times_v.iter().copied());
         v.reals(at_u.iter().copied()).reals(at_v.iter().copied()).word(".UNSPECIFIED.");
     };

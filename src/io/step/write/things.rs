@@ -9,7 +9,7 @@ use crate::network::Chain;
 
 /// One thing to write.
 #[derive(Clone, Debug)]
-pub enum Shown {
+pub enum StepShape {
     /// A point, model units.
     Point(DVec3),
     /// A curve.
@@ -20,13 +20,13 @@ pub enum Shown {
 
 /// A thing with its name and what is known of it.
 #[derive(Clone, Debug)]
-pub struct Thing {
+pub struct StepThing {
     /// Name as declared, empty for none.
     pub name: String,
     /// Groups that it belongs to.
     pub layers: Vec<String>,
     /// What it is.
-    pub shown: Shown,
+    pub shown: StepShape,
     /// Red, green and blue from 0 to 1 of a curve that has a colour.
     pub color: Option<[f64; 3]>,
     /// Area and volume that a reader can compare.
@@ -43,7 +43,7 @@ pub struct Setup {
     /// Name of its unit as scripts have it.
     pub unit: &'static str,
     /// Its unit and accuracy.
-    pub scale: Scale,
+    pub scale: StepScale,
 }
 
 /// Area and volume, model units.
@@ -57,7 +57,7 @@ pub struct Measured {
 
 /// How lengths go into the file.
 #[derive(Clone, Copy, Debug)]
-pub struct Scale {
+pub struct StepScale {
     /// Model units in one unit of the file.
     pub model: f64,
     /// Of the model: what is no B-spline is within it.

@@ -13,9 +13,9 @@ use crate::io::cad::bodies::{Bodies, Faces, numbered};
 use crate::io::cad::defect::{Defect, defect};
 use crate::io::cad::elementary_surface::Ground;
 use crate::io::step::write::curves::Along;
-use crate::io::step::write::records::{Id, Records};
+use crate::io::step::write::records::{Id, SectionRecords};
 use crate::io::step::write::styles::Painted;
-use crate::io::step::write::things::Scale;
+use crate::io::step::write::things::StepScale;
 use crate::io::step::write::{pcurves, surfaces};
 
 /// What became of faces.
@@ -38,7 +38,7 @@ pub struct WrittenFaces {
 }
 
 /// Writes faces under a name.
-pub fn put(faces: &Faces, records: &mut Records, name: &str, scale: &Scale) -> Result<WrittenFaces, Defect> {
+pub fn put(faces: &Faces, records: &mut SectionRecords, name: &str, scale: &StepScale) -> Result<WrittenFaces, Defect> {
     let bodies = faces.bodies(&scale.tolerance)?;
     let written = WrittenFaces { off: bodies.off, left_out: bodies.left_out(name), thin_area: bodies.thin_area, ..WrittenFaces::default() };
     let mut writer = Writer { bodies: &bodies, scale, surfaces: Vec::new(), edges: Vec::new(), written };
@@ -76,7 +76,7 @@ pub fn put(faces: &Faces, records: &mut Records, name: &str, scale: &Scale) -> R
 }
 
 /// The shell of a skin.
-fn shell(records: &mut Records, bodies: &Bodies, skin: usize, faces: &[Id]) -> Id {
+fn shell(records: &mut SectionRecords, bodies: &Bodies, skin: usize, faces: &[Id]) -> Id {
     let skin = &bodies.body.skins[skin];
     let own: Vec<Id> = skin.faces.iter().map(|k| faces[*k]).collect();
     records.put(if skin.closed { "CLOSED_SHELL" } else { "OPEN_SHELL" }, |v| {
@@ -86,7 +86,7 @@ fn shell(records: &mut Records, bodies: &Bodies, skin: usize, faces: &[Id]) -> I
 
 struct Writer<'b> {
     bodies: &'b Bodies<'b>,
-    scale: &'b Scale,
+    scale: &'b StepScale,
     /// The surface of each face.
     surfaces: Vec<Id>,
     /// The record of each edge.
@@ -96,7 +96,7 @@ struct Writer<'b> {
 
 impl Writer<'_> {
     /// All faces, in the order of the body.
-    fn faces(&mut self, records: &mut Records) -> Result<Vec<Id>, Defect> {
+    fn faces(&mut self, records: &mut SectionRecords) -> Result<Vec<Id>, Defect> {
         self.surfaces = self.bodies.grounds.iter().map(|ground| surfaces::put(records, ground, self.scale)).collect();
         self.edges = self.all_edges(records)?;
         let mut made = Vec::with_capacity(self.bodies.grounds.len());
@@ -132,7 +132,7 @@ impl Writer<'_> {
     }
 
     /// The edges that some face uses, with their vertices.
-    fn all_edges(&self, records: &mut Records) -> Result<Vec<Option<Id>>, Defect> {
+    fn all_edges(&self, records: &mut SectionRecords) -> Result<Vec<Option<Id>>, Defect> {
         let mut vertices: Vec<Option<Id>> = vec![None; self.bodies.vertices.len()];
         let mut edges = Vec::with_capacity(self.bodies.curves.len());
         let mut faces_of: Vec<Vec<usize>> = vec![Vec::new(); self.bodies.curves.len()];
@@ -164,7 +164,7 @@ impl Writer<'_> {
     }
 
     /// The curve of an edge with what it is in the parameters of its faces' surfaces, where readers need it.
-    fn on_surfaces(&self, records: &mut Records, faces: &[usize], own: Id, along: &Along) -> Id {
+    fn on_surfaces(&self, records: &mut SectionRecords, faces: &[usize], own: Id, along: &Along) -> Id {
         let once = |face: &&usize| faces.iter().filter(|other| other == face).count() == 1;
         let mut within = Vec::new();
         for face in faces.iter().filter(once) {
@@ -180,7 +180,7 @@ impl Writer<'_> {
         })
     }
 
-    fn face(&self, records: &mut Records, k: usize) -> Result<Id, Defect> {
+    fn face(&self, records: &mut SectionRecords, k: usize) -> Result<Id, Defect> {
         let surface = self.surfaces[k];
         let loops = self.bodies.loops(k);
         let mut bounds = Vec::with_capacity(loops.len());

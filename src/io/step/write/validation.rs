@@ -2,11 +2,11 @@
 
 use crate::base::math::powi;
 use crate::io::step::write::product::Context;
-use crate::io::step::write::records::{Id, Records};
-use crate::io::step::write::things::{Measured, Setup, Thing};
+use crate::io::step::write::records::{Id, SectionRecords};
+use crate::io::step::write::things::{Measured, Setup, StepThing};
 
 /// Writes the sums over all things as properties of the product, without the area of what is too thin for the file.
-pub fn put(records: &mut Records, things: &[Thing], thin: f64, product: Id, context: Context, setup: &Setup) {
+pub fn put(records: &mut SectionRecords, things: &[StepThing], thin: f64, product: Id, context: Context, setup: &Setup) {
     let sum = |of: fn(&Measured) -> Option<f64>| things.iter().filter_map(|t| of(&t.measured)).reduce(|a, b| a + b);
     let model = setup.scale.model;
     let kinds = [

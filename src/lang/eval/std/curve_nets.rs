@@ -8,7 +8,7 @@ use crate::lang::eval::halt::Halt;
 use crate::lang::eval::std::surfaces::reported;
 use crate::lang::values::conversions::{Point, Rest};
 use crate::network::{self, Chain, ChainFlow, FlowKind};
-use crate::surface::blended::coons::{self, Grid, Method, Settings};
+use crate::surface::blended::coons::{self, BlendMethod, CoonsSettings, Grid};
 use crate::surface::faults::LoopFault;
 use crate::surface::{Reparam, Surface};
 
@@ -76,24 +76,24 @@ fn same(a: &Chain, b: &Chain) -> bool {
 }
 
 /// What decides a flow beside the curves.
-struct Said {
+struct FlowSettings {
     pole: Option<Point>,
     closed: bool,
     reparam: ReparamWord,
-    method: Method,
+    method: BlendMethod,
 }
 
 /// A surface over a grid of curves, its flow found.
-fn over_grid(cx: &mut Cx, curves: Curves, said: &Said) -> Result<Surface, Halt> {
+fn over_grid(cx: &mut Cx, curves: Curves, said: &FlowSettings) -> Result<Surface, Halt> {
     let tolerance = cx.tolerance()?;
     curves.each_once(&tolerance)?;
     let (chains, along_u, along_v) = curves.listed();
     let options = ChainFlow { along_u, along_v, pole: said.pole.map(|p| p.0), closed: said.closed };
     let (flow, nodes) = network::of_chains(&chains, &options, &tolerance)?;
     let blend = match said.method {
-        Method::Linear => Some("linear"),
-        Method::Cubic => Some("cubic"),
-        Method::Coons | Method::Lagrange | Method::Gordon => None,
+        BlendMethod::Linear => Some("linear"),
+        BlendMethod::Cubic => Some("cubic"),
+        BlendMethod::Coons | BlendMethod::Lagrange | BlendMethod::Gordon => None,
     };
     if let Some(word) = blend.filter(|_| flow.kind == FlowKind::UniformTrilateral) {
         let range = "auto where three curves have no pole: they are blended in one way".to_owned();
@@ -104,7 +104,7 @@ fn over_grid(cx: &mut Cx, curves: Curves, said: &Said) -> Result<Surface, Halt> 
         ReparamWord::Smooth => Reparam::Smooth,
         ReparamWord::Linear => Reparam::Linear,
     };
-    let settings = Settings { method: said.method, reparam, origin: cx.origin() };
+    let settings = CoonsSettings { method: said.method, reparam, origin: cx.origin() };
     let (surface, notes) = coons::build(&Grid { chains: &chains, flow: &flow, poles }, &settings, &tolerance)?;
     reported(cx, surface, &notes)
 }
@@ -141,11 +141,11 @@ builtins! {
         blend: BlendWord = "auto",
     ) -> Surface = |cx, row, u, v, pole, closed, reparam, blend| {
         let method = match blend {
-            BlendWord::Auto => Method::Coons,
-            BlendWord::Linear => Method::Linear,
-            BlendWord::Cubic => Method::Cubic,
+            BlendWord::Auto => BlendMethod::Coons,
+            BlendWord::Linear => BlendMethod::Linear,
+            BlendWord::Cubic => BlendMethod::Cubic,
         };
-        over_grid(cx, Curves { row, u, v }, &Said { pole, closed, reparam, method })
+        over_grid(cx, Curves { row, u, v }, &FlowSettings { pole, closed, reparam, method })
     };
 
     /// Transfinite surface through a grid of curves: one blend over the whole grid.
@@ -173,6 +173,6 @@ builtins! {
         /// How curves are matched between their meetings.
         reparam: ReparamWord = "smooth",
     ) -> Surface = |cx, row, u, v, pole, closed, reparam| {
-        over_grid(cx, Curves { row, u, v }, &Said { pole, closed, reparam, method: Method::Lagrange })
+        over_grid(cx, Curves { row, u, v }, &FlowSettings { pole, closed, reparam, method: BlendMethod::Lagrange })
     };
 }

@@ -33,7 +33,7 @@ const EXAMPLE: &str = "fit(points, tolerance: 0.1mm), or fit(points, start: (1, 
 
 /// What only curves take, or only those through all points.
 #[derive(Clone, Copy)]
-struct Said {
+struct FitSettings {
     tolerance: Option<Length>,
     start: Option<Direction>,
     end: Option<Direction>,
@@ -41,7 +41,7 @@ struct Said {
     kinks: Option<Angle>,
 }
 
-impl Said {
+impl FitSettings {
     /// E305 where two of these were given.
     fn check(self, surface: bool) -> Result<(), Halt> {
         let tangent = self.start.map(|_| "start").or(self.end.map(|_| "end"));
@@ -70,7 +70,7 @@ impl Said {
     }
 }
 
-fn fitted(cx: &mut Cx, data: Data, said: Said) -> Result<Value, Halt> {
+fn fitted(cx: &mut Cx, data: Data, said: FitSettings) -> Result<Value, Halt> {
     let within = said.within()?;
     match data {
         Data::Row(points) => {
@@ -124,6 +124,6 @@ builtins! {
         /// Turns of the data above this are kept as corners of a curve.
         kinks: Option<Angle>,
     ) -> Value = |cx, points, tolerance, start, end, closed, kinks| {
-        fitted(cx, points, Said { tolerance, start, end, closed, kinks })
+        fitted(cx, points, FitSettings { tolerance, start, end, closed, kinks })
     };
 }

@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use crate::lang::values::conversions::{FromValue, IntoValue, Point};
 use crate::lang::values::types::Ty;
-use crate::lang::values::value::{Home, MeshValue, ModuleId, Plane, ShellValue, Value};
+use crate::lang::values::value::{EntityHome, MeshValue, ModuleId, Plane, ShellValue, Value};
 use crate::model::{PatchId, SharedEdge, VertexId};
 use crate::network::{Chain, LinkId};
 use crate::surface::Surface;
@@ -282,7 +282,7 @@ macro_rules! in_model {
     ($($(#[$doc:meta])* $name:ident = $kind:ident($id:ty);)+) => { $(
         $(#[$doc])*
         #[derive(Clone, Debug)]
-        pub struct $name(pub Home, pub $id);
+        pub struct $name(pub EntityHome, pub $id);
         impl FromValue for $name {
             const TY: Ty = Ty::$kind;
             fn from_value(value: Value) -> Option<Self> {

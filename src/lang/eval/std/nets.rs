@@ -10,9 +10,9 @@ use crate::lang::eval::std::surfaces::reported;
 use crate::lang::values::conversions::Length;
 use crate::network::Chain;
 use crate::network::net;
-use crate::surface::blended::coons::{self, Grid, Method, Settings};
+use crate::surface::blended::coons::{self, BlendMethod, CoonsSettings, Grid};
 use crate::surface::blended::skin::{self, Across};
-use crate::surface::blended::skin_align::Section;
+use crate::surface::blended::skin_align::SkinSection;
 use crate::surface::blended::skin_ends::Leaving;
 use crate::surface::{Reparam, Surface};
 
@@ -64,7 +64,7 @@ builtins! {
         let chains: Vec<Chain> = profiles.into_iter().chain(net::distinct(guides, &near)).collect();
         let (flow, nodes) = net::of_net(&chains, count, &near)?;
         let poles = (flow.poles.0.map(|n| nodes[n]), flow.poles.1.map(|n| nodes[n]));
-        let settings = Settings { method: Method::Gordon, reparam: Reparam::Smooth, origin: cx.origin() };
+        let settings = CoonsSettings { method: BlendMethod::Gordon, reparam: Reparam::Smooth, origin: cx.origin() };
         let (surface, mut notes) = coons::build(&Grid { chains: &chains, flow: &flow, poles }, &settings, &tolerance)?;
         notes.extend(surface.gap_note(&tolerance));
         reported(cx, surface, &notes)
@@ -105,9 +105,9 @@ builtins! {
                 return exclusive("ends, or `closed: true`", vec![argument, "closed"]);
             }
         }
-        let sections: Vec<Section> = sections.into_iter().map(|s| match s {
-            SectionKind::Curve(chain) => Section::Curve(chain),
-            SectionKind::Point(p) => Section::Point(p),
+        let sections: Vec<SkinSection> = sections.into_iter().map(|s| match s {
+            SectionKind::Curve(chain) => SkinSection::Curve(chain),
+            SectionKind::Point(p) => SkinSection::Point(p),
         }).collect();
         skin::said_well(&sections, closed, &tolerance)?;
         let smooth = match smooth {
@@ -122,7 +122,7 @@ builtins! {
             AcrossWord::Linear => Across::Linear,
         };
         let ends = (leaving(start, "start")?, leaving(end, "end")?);
-        let settings = skin::Settings { across, closed, ends, smooth, origin: cx.origin() };
+        let settings = skin::SkinSettings { across, closed, ends, smooth, origin: cx.origin() };
         let (surface, notes) = skin::skin(&sections, &settings, &tolerance)?;
         reported(cx, surface, &notes)
     };

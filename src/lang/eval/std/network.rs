@@ -7,7 +7,7 @@ use crate::base::tolerance::WHOLE_NUMBER;
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
 use crate::lang::eval::std::kinds::{CurveOrSurface, LinkOf, Meeting, NetworkOf, ThingsOrCurve};
-use crate::lang::values::conversions::{Length, Node, Point, Station};
+use crate::lang::values::conversions::{Length, NodePlace, Point, Station};
 use crate::lang::values::value::Value;
 use crate::network::{Chain, LinkId};
 use crate::surface::Nearest;
@@ -163,9 +163,9 @@ builtins! {
 
 fields! {
     /// First point of a curve.
-    fn start(of: Chain) -> Node = |_, of| Ok(Node(of.start()));
+    fn start(of: Chain) -> NodePlace = |_, of| Ok(NodePlace(of.start()));
     /// Last point of a curve.
-    fn end(of: Chain) -> Node = |_, of| Ok(Node(of.end()));
+    fn end(of: Chain) -> NodePlace = |_, of| Ok(NodePlace(of.end()));
     /// The point halfway along a curve.
     fn mid(of: Chain) -> Point = |_, of| Ok(Point(of.point(0.5)));
     /// Arc length of a curve.
@@ -182,9 +182,9 @@ fields! {
         Ok(links(cx, &of)?.into_iter().map(|(link, _)| LinkOf(module, link)).collect())
     };
     /// The nodes of the network along a curve.
-    fn nodes(of: Chain) -> Vec<Node> = |cx, of| Ok(nodes(cx, &of)?.into_iter().map(Node).collect());
+    fn nodes(of: Chain) -> Vec<NodePlace> = |cx, of| Ok(nodes(cx, &of)?.into_iter().map(NodePlace).collect());
     /// All nodes of the network.
-    fn nodes(of: NetworkOf) -> Vec<Node> = |cx, of| Ok(cx.network(of.0)?.nodes.iter().map(|n| Node(n.point)).collect());
+    fn nodes(of: NetworkOf) -> Vec<NodePlace> = |cx, of| Ok(cx.network(of.0)?.nodes.iter().map(|n| NodePlace(n.point)).collect());
     /// All links of the network.
     fn links(of: NetworkOf) -> Vec<LinkOf> = |cx, of| {
         Ok((0..cx.network(of.0)?.links.len()).map(|i| LinkOf(of.0, LinkId::at(i))).collect())

@@ -9,11 +9,11 @@ use crate::lang::values::conversions::{Angle, Axis, Length, Point};
 use crate::lang::values::value::Value;
 use crate::network::Chain;
 use crate::surface::Surface;
-use crate::surface::swept::along::{Settings as AlongSettings, along as carried_along};
+use crate::surface::swept::along::{AlongSettings, along as carried_along};
 use crate::surface::swept::laws::Law;
 use crate::surface::swept::revolve;
 use crate::surface::swept::sweep::sweep as swept;
-use crate::surface::swept::sweep_input::{Input, Method};
+use crate::surface::swept::sweep_input::{Input, NetMethod};
 
 crate::choices! {
     /// What a profile does at a corner of its path.
@@ -134,8 +134,8 @@ builtins! {
             (LawWord::Synchronized, None) => Law::Synchronized,
         };
         let method = match method {
-            MethodWord::Gordon => Method::Gordon,
-            MethodWord::Local => Method::Local,
+            MethodWord::Gordon => NetMethod::Gordon,
+            MethodWord::Local => NetMethod::Local,
         };
         let input = Input { sections: &sections, guides: &guides, law, method, origin: cx.origin() };
         let (surface, notes) = swept(&input, &tolerance)?;

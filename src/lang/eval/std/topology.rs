@@ -15,14 +15,14 @@ use crate::lang::eval::std::choosing;
 use crate::lang::eval::std::kinds::{Carrier, EdgeKey, EdgeOf, Edged, Faces, VertexOf};
 use crate::lang::eval::std::surfaces::checked_uv;
 use crate::lang::values::conversions::{Angle, Direction, Length};
-use crate::lang::values::value::{Home, Value};
+use crate::lang::values::value::{EntityHome, Value};
 use crate::model::contact::Turn;
 use crate::model::{EdgeId, Model, PatchId, SharedEdges, SurfaceId};
 use crate::network::Chain;
 use crate::surface::{IsoLine, Surface, SurfaceKind};
 
 /// The patches of a declared surface in the model of the script.
-pub(crate) fn patches(cx: &mut Cx, surfaces: &[Surface]) -> Result<(Home, Arc<Model>, Vec<PatchId>), Halt> {
+pub(crate) fn patches(cx: &mut Cx, surfaces: &[Surface]) -> Result<(EntityHome, Arc<Model>, Vec<PatchId>), Halt> {
     let module = cx.module();
     let (scene, home) = Scene::at_home(cx, module, surfaces)?;
     let places = scene.find_all(surfaces)?;
@@ -31,7 +31,7 @@ pub(crate) fn patches(cx: &mut Cx, surfaces: &[Surface]) -> Result<(Home, Arc<Mo
 }
 
 /// An edge of the model as a value.
-pub(crate) fn whole(home: &Home, model: &Model, edge: EdgeId) -> EdgeOf {
+pub(crate) fn whole(home: &EntityHome, model: &Model, edge: EdgeId) -> EdgeOf {
     EdgeOf(home.clone(), Arc::new(model.whole_edge(edge)))
 }
 

@@ -15,7 +15,7 @@ pub(crate) enum Made {
 
 /// What it is that a word names.
 #[derive(Clone, Copy)]
-enum Shape {
+enum Meaning {
     Box,
     Cylinder,
     Sphere,
@@ -34,51 +34,51 @@ enum Shape {
 }
 
 /// Words of other tools, the order of their arguments, and whether the shape lies about the origin.
-const SHAPES: &[(&str, Shape, &[&str], bool)] = &[
+const SHAPES: &[(&str, Meaning, &[&str], bool)] = &[
     // OpenSCAD.
-    ("cube", Shape::Box, &["size"], false),
-    ("cylinder", Shape::Cylinder, &["h", "r1", "r2"], false),
-    ("sphere", Shape::Sphere, &["r"], true),
-    ("circle", Shape::Circle, &["r"], true),
-    ("square", Shape::Rectangle, &["size"], false),
-    ("polygon", Shape::Path(true), &["points"], false),
+    ("cube", Meaning::Box, &["size"], false),
+    ("cylinder", Meaning::Cylinder, &["h", "r1", "r2"], false),
+    ("sphere", Meaning::Sphere, &["r"], true),
+    ("circle", Meaning::Circle, &["r"], true),
+    ("square", Meaning::Rectangle, &["size"], false),
+    ("polygon", Meaning::Path(true), &["points"], false),
     // CadQuery and build123d.
-    ("box", Shape::Box, &["x", "y", "z"], true),
-    ("Box", Shape::Box, &["x", "y", "z"], true),
-    ("Cylinder", Shape::Cylinder, &["r", "h"], true),
-    ("Sphere", Shape::Sphere, &["r"], true),
-    ("Cone", Shape::Cone, &["r1", "r2", "h"], true),
-    ("Torus", Shape::Torus, &["major", "minor"], true),
-    ("Circle", Shape::Circle, &["r"], true),
-    ("rect", Shape::Rectangle, &["x", "y"], true),
-    ("rectangle", Shape::Rectangle, &["x", "y"], true),
-    ("Rectangle", Shape::Rectangle, &["x", "y"], true),
-    ("Polyline", Shape::Path(false), &[], false),
-    ("Line", Shape::Line, &[], false),
-    ("Spline", Shape::Spline, &[], false),
-    ("ThreePointArc", Shape::Arc([0, 2, 1]), &[], false),
+    ("box", Meaning::Box, &["x", "y", "z"], true),
+    ("Box", Meaning::Box, &["x", "y", "z"], true),
+    ("Cylinder", Meaning::Cylinder, &["r", "h"], true),
+    ("Sphere", Meaning::Sphere, &["r"], true),
+    ("Cone", Meaning::Cone, &["r1", "r2", "h"], true),
+    ("Torus", Meaning::Torus, &["major", "minor"], true),
+    ("Circle", Meaning::Circle, &["r"], true),
+    ("rect", Meaning::Rectangle, &["x", "y"], true),
+    ("rectangle", Meaning::Rectangle, &["x", "y"], true),
+    ("Rectangle", Meaning::Rectangle, &["x", "y"], true),
+    ("Polyline", Meaning::Path(false), &[], false),
+    ("Line", Meaning::Line, &[], false),
+    ("Spline", Meaning::Spline, &[], false),
+    ("ThreePointArc", Meaning::Arc([0, 2, 1]), &[], false),
     // FreeCAD.
-    ("makeBox", Shape::Box, &["x", "y", "z"], false),
-    ("makeCylinder", Shape::Cylinder, &["r", "h"], false),
-    ("makeSphere", Shape::Sphere, &["r"], true),
-    ("makeCone", Shape::Cone, &["r1", "r2", "h"], false),
-    ("makeTorus", Shape::Torus, &["major", "minor"], true),
-    ("makeCircle", Shape::Circle, &["r"], true),
-    ("makeLine", Shape::Line, &[], false),
-    ("makePolygon", Shape::Path(false), &["points"], false),
-    ("makeLoft", Shape::Skin, &["sections"], false),
+    ("makeBox", Meaning::Box, &["x", "y", "z"], false),
+    ("makeCylinder", Meaning::Cylinder, &["r", "h"], false),
+    ("makeSphere", Meaning::Sphere, &["r"], true),
+    ("makeCone", Meaning::Cone, &["r1", "r2", "h"], false),
+    ("makeTorus", Meaning::Torus, &["major", "minor"], true),
+    ("makeCircle", Meaning::Circle, &["r"], true),
+    ("makeLine", Meaning::Line, &[], false),
+    ("makePolygon", Meaning::Path(false), &["points"], false),
+    ("makeLoft", Meaning::Skin, &["sections"], false),
     // Rhino.
-    ("AddSphere", Shape::Sphere, &["r"], true),
-    ("AddCircle", Shape::Circle, &["r"], true),
-    ("AddLine", Shape::Line, &[], false),
-    ("AddPolyline", Shape::Path(false), &["points"], false),
-    ("AddInterpCurve", Shape::Spline, &["points"], false),
-    ("AddArc3Pt", Shape::Arc([0, 1, 2]), &[], false),
-    ("AddLoftSrf", Shape::Skin, &["sections"], false),
+    ("AddSphere", Meaning::Sphere, &["r"], true),
+    ("AddCircle", Meaning::Circle, &["r"], true),
+    ("AddLine", Meaning::Line, &[], false),
+    ("AddPolyline", Meaning::Path(false), &["points"], false),
+    ("AddInterpCurve", Meaning::Spline, &["points"], false),
+    ("AddArc3Pt", Meaning::Arc([0, 1, 2]), &[], false),
+    ("AddLoftSrf", Meaning::Skin, &["sections"], false),
     // What is tried by those who know none of them.
-    ("cone", Shape::Cone, &["r1", "r2", "h"], false),
-    ("torus", Shape::Torus, &["major", "minor"], true),
-    ("loft", Shape::Skin, &["sections"], false),
+    ("cone", Meaning::Cone, &["r1", "r2", "h"], false),
+    ("torus", Meaning::Torus, &["major", "minor"], true),
+    ("loft", Meaning::Skin, &["sections"], false),
 ];
 
 /// Names that arguments have besides those of [`SHAPES`].
@@ -100,27 +100,27 @@ const ALIASES: &[(&str, &[&str])] = &[
 /// A word of [`SHAPES`] that begins a name of what has none: in small letters.
 pub(crate) fn stem(name: &str) -> &'static str {
     match SHAPES.iter().find(|s| s.0 == name).map(|s| s.1) {
-        Some(Shape::Box) => "block",
-        Some(Shape::Cylinder) => "cylinder",
-        Some(Shape::Sphere) => "ball",
-        Some(Shape::Cone) => "cone",
-        Some(Shape::Torus) => "torus",
-        Some(Shape::Circle) => "circle",
-        Some(Shape::Rectangle) => "square",
-        Some(Shape::Skin) => "skin",
+        Some(Meaning::Box) => "block",
+        Some(Meaning::Cylinder) => "cylinder",
+        Some(Meaning::Sphere) => "ball",
+        Some(Meaning::Cone) => "cone",
+        Some(Meaning::Torus) => "torus",
+        Some(Meaning::Circle) => "circle",
+        Some(Meaning::Rectangle) => "square",
+        Some(Meaning::Skin) => "skin",
         _ => "curve",
     }
 }
 
 /// The arguments of a call by the names of its word.
-struct Given<'a> {
+struct GivenArguments<'a> {
     call: &'a Call,
     order: &'static [&'static str],
     /// A point that stands first: the centre.
     center: Option<String>,
 }
 
-impl<'a> Given<'a> {
+impl<'a> GivenArguments<'a> {
     fn get(&self, name: &str) -> Option<&'a str> {
         let names = ALIASES.iter().find(|a| a.0 == name).map_or(&[][..], |a| a.1);
         let place = self.order.iter().position(|n| *n == name).unwrap_or(usize::MAX - 1);
@@ -161,10 +161,10 @@ pub(crate) fn shape(call: &Call) -> Option<Made> {
     if !call.knows_only(&known) {
         return None;
     }
-    let round = matches!(shape, Shape::Circle | Shape::Sphere);
+    let round = matches!(shape, Meaning::Circle | Meaning::Sphere);
     let first = call.unnamed().next().filter(|first| round && call.unnamed().count() > 1 || items(first).is_some());
     let center = call.named(&["center", "centre"]).or(first).filter(|_| round);
-    let given = Given { call, order, center: center.and_then(point) };
+    let given = GivenArguments { call, order, center: center.and_then(point) };
     if round && center.is_some() && given.center.is_none() {
         return None;
     }
@@ -174,12 +174,12 @@ pub(crate) fn shape(call: &Call) -> Option<Made> {
     };
     let at = given.center.clone().unwrap_or_else(|| "(0, 0, 0)".to_owned());
     Some(match shape {
-        Shape::Box => {
+        Meaning::Box => {
             let [x, y, z] = <[String; 3]>::try_from(given.sizes(3)?).ok()?;
             let back = centred.then(|| [&x, &y, &z].map(|side| negative(&half(side))).join(", "));
             solid(rectangle(&x, &y), &z, back)
         }
-        Shape::Cylinder => {
+        Meaning::Cylinder => {
             let height = given.get("h")?;
             let radius = given.radius().or_else(|| given.get("r1").map(str::to_owned))?;
             let back = centred.then(|| format!("0, 0, {}", negative(&half(height))));
@@ -188,12 +188,12 @@ pub(crate) fn shape(call: &Call) -> Option<Made> {
                 None => solid(format!("circle(center: (0, 0, 0), radius: {radius})"), height, back),
             }
         }
-        Shape::Cone => {
+        Meaning::Cone => {
             let height = given.get("h")?;
             let back = centred.then(|| format!("0, 0, {}", negative(&half(height))));
             Made::Surface(cone(given.get("r1")?, given.get("r2")?, height)).back(back)
         }
-        Shape::Sphere => {
+        Meaning::Sphere => {
             let radius = given.radius()?;
             let under = negative(&radius);
             let ball = Made::Surface(format!("revolve(arc((0, 0, {under}), (0, 0, {radius}), through: ({radius}, 0, 0)))"));
@@ -202,29 +202,29 @@ pub(crate) fn shape(call: &Call) -> Option<Made> {
                 None => ball,
             }
         }
-        Shape::Torus => {
+        Meaning::Torus => {
             let (major, minor) = (given.get("major")?, given.get("minor")?);
             Made::Surface(format!("revolve(circle(center: ({major}, 0, 0), radius: {minor}, normal: (0, 1, 0)))"))
         }
-        Shape::Circle => Made::Curve(format!("circle(center: {at}, radius: {})", given.radius()?)),
-        Shape::Rectangle => {
+        Meaning::Circle => Made::Curve(format!("circle(center: {at}, radius: {})", given.radius()?)),
+        Meaning::Rectangle => {
             let [x, y] = <[String; 2]>::try_from(given.sizes(2)?).ok()?;
             let back = centred.then(|| format!("{}, {}, 0", negative(&half(&x)), negative(&half(&y))));
             Made::Curve(rectangle(&x, &y)).back(back)
         }
-        Shape::Path(closed) => Made::Curve(format!("polyline({}{})", given.points()?, if closed { ", closed: true" } else { "" })),
-        Shape::Line => {
+        Meaning::Path(closed) => Made::Curve(format!("polyline({}{})", given.points()?, if closed { ", closed: true" } else { "" })),
+        Meaning::Line => {
             let ends: Vec<String> = call.unnamed().map(point).collect::<Option<_>>()?;
             let [from, to] = <[String; 2]>::try_from(ends).ok()?;
             Made::Curve(format!("line({from}, {to})"))
         }
-        Shape::Spline => Made::Curve(format!("spline({})", given.points()?)),
-        Shape::Arc(places) => {
+        Meaning::Spline => Made::Curve(format!("spline({})", given.points()?)),
+        Meaning::Arc(places) => {
             let ends: Option<Vec<String>> = places.iter().map(|k| call.unnamed().nth(*k).and_then(point)).collect();
             let [from, to, through] = <[String; 3]>::try_from(ends?).ok()?;
             Made::Curve(format!("arc({from}, {to}, through: {through})"))
         }
-        Shape::Skin => Made::Surface(format!("skin([{}])", items(given.get("sections")?)?.join(", "))),
+        Meaning::Skin => Made::Surface(format!("skin([{}])", items(given.get("sections")?)?.join(", "))),
     })
 }
 
