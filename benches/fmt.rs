@@ -7,6 +7,9 @@ use std::fmt::Write as _;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use lofting::lang::fmt::format;
 
+#[path = "shared/scripts.rs"]
+mod scripts;
+
 /// Bytes of each script.
 const BYTES: usize = 10_000_000;
 
@@ -40,46 +43,14 @@ fn long_declarations() -> String {
     text
 }
 
-/// One declaration.
-fn points() -> String {
-    let mut text = "let points = [".to_owned();
-    while text.len() < BYTES {
-        text += "(1.5, 22.25, 3m), ";
-    }
-    text += "(0, 0, 0)]\n";
-    text
-}
-
-/// Declarations of which hardly two have the same tokens in the same order.
-fn new_shapes() -> String {
-    let (mut text, mut seed) = (String::new(), 1_u64);
-    let mut random = |below: u64| {
-        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (seed >> 33) % below
-    };
-    for i in 0.. {
-        let _ = write!(text, "let v{i} = a");
-        for _ in 0..random(40) {
-            let operator = ["+", "-", "*", "/"][random(4) as usize];
-            let operand = ["b1", "2.5", "3m", "(1, 2, 3m)", "p.x", "f(a, of: b)", "[a, b]", "c[i]", "(a - 1)"][random(9) as usize];
-            let _ = write!(text, " {operator} {operand}");
-        }
-        text.push('\n');
-        if text.len() > BYTES {
-            break;
-        }
-    }
-    text
-}
-
 fn layout(c: &mut Criterion) {
     let mut group = c.benchmark_group("fmt");
     group.sample_size(10);
     let scripts = [
         ("short declarations", declarations()),
         ("long declarations", long_declarations()),
-        ("one list", points()),
-        ("new shapes", new_shapes()),
+        ("one list", scripts::one_list(BYTES)),
+        ("new shapes", scripts::new_sums(BYTES)),
     ];
     for (name, text) in scripts {
         group.throughput(Throughput::Bytes(text.len() as u64));

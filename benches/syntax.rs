@@ -19,6 +19,9 @@ mod grammar {
     pub struct Grammar;
 }
 
+#[path = "shared/scripts.rs"]
+mod scripts;
+
 /// Bytes of a long script.
 const BYTES: usize = 10_000_000;
 
@@ -44,38 +47,6 @@ fn new_shapes(n: usize) -> String {
     text
 }
 
-/// Sums of which hardly two have the same tokens in the same order.
-fn new_sums() -> String {
-    let (mut text, mut seed) = (String::new(), 1_u64);
-    let mut random = |below: u64| {
-        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (seed >> 33) % below
-    };
-    for i in 0.. {
-        let _ = write!(text, "let v{i} = a");
-        for _ in 0..random(40) {
-            let operator = ["+", "-", "*", "/"][random(4) as usize];
-            let operand = ["b1", "2.5", "3m", "(1, 2, 3m)", "p.x", "f(a, of: b)", "[a, b]", "c[i]", "(a - 1)"][random(9) as usize];
-            let _ = write!(text, " {operator} {operand}");
-        }
-        text.push('\n');
-        if text.len() > BYTES {
-            break;
-        }
-    }
-    text
-}
-
-/// One declaration.
-fn one_list() -> String {
-    let mut text = "let points = [".to_owned();
-    while text.len() < BYTES {
-        text += "(1.5, 22.25, 3m), ";
-    }
-    text += "(0, 0, 0)]\n";
-    text
-}
-
 fn parsing(c: &mut Criterion) {
     let mut group = c.benchmark_group("parse");
     group.sample_size(10);
@@ -94,7 +65,9 @@ fn parsing(c: &mut Criterion) {
 fn parsers(c: &mut Criterion) {
     let mut group = c.benchmark_group("10 MB");
     group.sample_size(10);
-    for (name, text) in [("two shapes", points_and_lines(150_000)), ("new shapes", new_sums()), ("one list", one_list())] {
+    for (name, text) in
+        [("two shapes", points_and_lines(150_000)), ("new shapes", scripts::new_sums(BYTES)), ("one list", scripts::one_list(BYTES))]
+    {
         group.throughput(Throughput::Bytes(text.len() as u64));
         group.bench_function(format!("{name}, tree"), |b| {
             b.iter_batched_ref(Names::default, |names| parse(&text, FileId(0), names), BatchSize::PerIteration);

@@ -261,7 +261,7 @@ pub enum Value {
     Mesh(Arc<MeshValue>),
     /// An unbounded plane.
     Plane(Arc<Plane>),
-    /// Item cells.
+    /// Imported cells.
     Table(Arc<Table>),
     /// A module: `ribs` after `use "ribs.loft" as ribs`.
     Module(ModuleId),

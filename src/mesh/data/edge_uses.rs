@@ -14,7 +14,8 @@ pub struct EdgeUse {
     pub backwards: u32,
 }
 
-/// Sides of all elements by their lower nodes: a counting sort, in time and memory linear in the number of sides.
+/// Sides of all elements by their lower nodes: a counting sort, in time and memory linear in the number of sides. The sides of as many
+/// elements as a mesh may have (`base::limits::MESH_ELEMENTS_MOST`) are counted with 32 bits.
 struct SidesByNode {
     /// Where the sides of each node begin.
     starts: Vec<u32>,

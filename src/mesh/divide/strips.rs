@@ -8,6 +8,7 @@ mod written_counts;
 
 use std::collections::BTreeMap;
 
+use crate::base::{job, work};
 use crate::mesh::divide::equations::{Conflict, Relation, Unknown};
 use crate::mesh::divide::parity::{self, Sum};
 use crate::model::glue::root;
@@ -156,6 +157,29 @@ impl<'a> Solver<'a> {
         let mut sum = BTreeMap::new();
         side.iter().for_each(|n| *sum.entry(self.strip_of[*n]).or_insert(0) += 1);
         sum
+    }
+
+    /// Goes over all relations until neither step changes a strip; each says whether it did.
+    fn until_unchanged(
+        &mut self,
+        equality: impl Fn(&mut Self, usize, &[usize], &[usize]) -> Result<bool, Conflict>,
+        three_sides: impl Fn(&mut Self, usize, &[Vec<usize>; 3]) -> Result<bool, Conflict>,
+    ) -> Result<(), Conflict> {
+        loop {
+            let mut changed = false;
+            work::spend(self.relations.len() as u64);
+            for (r, relation) in self.relations.iter().enumerate() {
+                job::poll();
+                changed |= match relation {
+                    Relation::Equal(a, b) => equality(self, r, a, b)?,
+                    Relation::EvenSum(_) => false,
+                    Relation::ThreeSides(sides) => three_sides(self, r, sides)?,
+                };
+            }
+            if !changed {
+                return Ok(());
+            }
+        }
     }
 
     /// Left minus right of an equality, strips that cancel left out.

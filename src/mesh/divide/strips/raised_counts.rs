@@ -2,29 +2,15 @@
 
 use std::collections::BTreeMap;
 
-use crate::base::{job, work};
+use crate::base::work;
 use crate::mesh::border::counts::largest;
-use crate::mesh::divide::equations::{Conflict, Relation};
+use crate::mesh::divide::equations::Conflict;
 use crate::mesh::divide::strips::Solver;
 
 impl Solver<'_> {
     /// Raises strips that nothing fixes until every face is satisfied.
     pub(super) fn raise(&mut self) -> Result<(), Conflict> {
-        loop {
-            let mut changed = false;
-            work::spend(self.relations.len() as u64);
-            for r in 0..self.relations.len() {
-                job::poll();
-                changed |= match &self.relations[r] {
-                    Relation::Equal(a, b) => self.raise_equality(r, a, b)?,
-                    Relation::EvenSum(_) => false,
-                    Relation::ThreeSides(sides) => self.raise_three_sides(r, sides)?,
-                };
-            }
-            if !changed {
-                return Ok(());
-            }
-        }
+        self.until_unchanged(Self::raise_equality, Self::raise_three_sides)
     }
 
     /// Raises the side of an equality that is short; whether it was.

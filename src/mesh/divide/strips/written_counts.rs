@@ -2,29 +2,15 @@
 
 use std::collections::BTreeMap;
 
-use crate::base::{job, work};
+use crate::base::work;
 use crate::mesh::border::counts::share;
-use crate::mesh::divide::equations::{Conflict, Relation};
+use crate::mesh::divide::equations::Conflict;
 use crate::mesh::divide::strips::{Solver, Strip};
 
 impl Solver<'_> {
     /// Fixes the strips whose counts follow from written ones, until nothing changes.
     pub(super) fn propagate(&mut self) -> Result<(), Conflict> {
-        loop {
-            let mut changed = false;
-            work::spend(self.relations.len() as u64);
-            for r in 0..self.relations.len() {
-                job::poll();
-                changed |= match &self.relations[r] {
-                    Relation::Equal(a, b) => self.over_equality(r, a, b)?,
-                    Relation::EvenSum(_) => false,
-                    Relation::ThreeSides(sides) => self.over_three_sides(r, sides)?,
-                };
-            }
-            if !changed {
-                return Ok(());
-            }
-        }
+        self.until_unchanged(Self::over_equality, Self::over_three_sides)
     }
 
     /// One strip or several on one side of an equality are fixed where all others are; whether some were.
