@@ -7,6 +7,7 @@ use glam::DVec3;
 use lofting::base::tolerance::Tolerance;
 use lofting::mesh::Mesh;
 use lofting::session::disk::{Disk, Outputs};
+use lofting::surface::closest;
 
 use crate::support::script;
 
@@ -83,5 +84,39 @@ fn reported_chord_errors_are_nearly_the_largest_distances() {
         let nearest = mesh.triangles.iter().map(|t| distance(t.map(|n| mesh.nodes[n as usize]))).fold(50.0, f64::min);
         let (is, reported) = (50.0 - nearest, mesh.chord_error(&Tolerance::new(1e-6, 100.0)).unwrap());
         assert!((is - reported).abs() <= 0.012 * is, "{settings}: {is}, reported {reported}");
+    }
+}
+
+/// A square of 100 × 100 with one hill that is highest at (30, 64), as a Bézier surface whose x and y are 100 u and 100 v.
+const HILL: &str = "units mm
+let net = [for j in 0..7: [for i in 0..7: (100 * i / 6, 100 * j / 6, 40 * exp(0 - ((i - 1.8)^2 + (j - 3.9)^2)))]]
+surface hill = bezier_surface(net)";
+
+/// Triangles, of quads their halves, as they are measured.
+fn halves(mesh: &Mesh) -> Vec<[DVec3; 3]> {
+    let node = |n: u32| mesh.nodes[n as usize];
+    let quads = mesh.quads.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]);
+    mesh.triangles.iter().copied().chain(quads).map(|t| t.map(node)).collect()
+}
+
+#[test]
+fn no_point_of_a_triangle_is_farther_than_the_reported_chord_error() {
+    let settings = ["size: 3  method: mapped", "size: 3  elements: quads", "size: 3  method: delaunay", "chord_error: 0.1"];
+    for settings in settings {
+        let mesh = mesh(&format!("{HILL}\nmesh m of hill {{ {settings} }}"));
+        let surface = &mesh.geometries.0[0].surface;
+        let reported = mesh.chord_error(&Tolerance::new(1e-6, 100.0)).unwrap();
+        let mut most = 0.0_f64;
+        for t in halves(&mesh) {
+            for (i, j) in (0..=6).flat_map(|i| (0..=6 - i).map(move |j| (f64::from(i) / 6.0, f64::from(j) / 6.0))) {
+                let p = t[0] + (t[1] - t[0]) * i + (t[2] - t[0]) * j;
+                // What is off upwards is more than the distance.
+                if (surface.point(p.x / 100.0, p.y / 100.0).z - p.z).abs() > 0.98 * reported {
+                    most = most.max(closest(surface, p).distance);
+                }
+            }
+        }
+        assert!(most <= reported * (1.0 + 1e-9), "{settings}: {most}, reported {reported}");
+        assert!(most >= 0.95 * reported, "{settings}: {most}, reported {reported}");
     }
 }
