@@ -28,7 +28,7 @@ impl Mesh {
 
     /// Everything that the chord error of a face follows from, by content.
     fn face_key(&self, face: &FaceRange, geometry: &FaceGeometry, tolerance: &Tolerance) -> Digest {
-        let FaceGeometry { surface, nodes, flipped: _ } = geometry;
+        let FaceGeometry { surface, nodes, .. } = geometry;
         let mut to = StableHasher::new("chord").with(surface);
         nodes.hash_places(&mut to);
         tolerance.hash_into(&mut to);

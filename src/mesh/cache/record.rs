@@ -147,7 +147,7 @@ pub fn write(built: &Built, surfaces: &[&Surface]) -> Option<Vec<u8>> {
     geometries.0.len().put(&mut to);
     for geometry in &geometries.0 {
         let surface = surfaces.iter().position(|s| s.is(&geometry.surface))? as u32;
-        let FaceGeometry { surface: _, nodes, flipped } = geometry;
+        let FaceGeometry { surface: _, nodes, flipped, quality: _ } = geometry;
         (surface, (nodes, flipped)).put(&mut to);
     }
     Some(to)
@@ -166,7 +166,7 @@ pub fn read(bytes: &[u8], surfaces: &[&Surface]) -> Option<Built> {
     let (explained, remarks) = Plain::take(&mut from)?;
     let placed: Vec<PlacedFace> = Plain::take(&mut from)?;
     let geometries = placed.into_iter().map(|PlacedFace { surface, nodes, flipped }| {
-        Some(FaceGeometry { surface: (*surfaces.get(surface as usize)?).clone(), nodes, flipped })
+        Some(FaceGeometry { surface: (*surfaces.get(surface as usize)?).clone(), nodes, flipped, quality: None })
     });
     let geometries = FaceGeometries(geometries.collect::<Option<_>>()?);
     let mesh = Mesh {

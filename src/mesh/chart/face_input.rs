@@ -52,7 +52,7 @@ pub(crate) fn prepared(context: &FaceInput, face: &Face, free: Free, mut ids: Ve
     ids.resize(free.uv.len(), 0);
     FaceMesh {
         surface: face.surface,
-        geometry: FaceGeometry { surface: surface.clone(), nodes: FaceNodes::Free(free, ids), flipped: face.flipped },
+        geometry: FaceGeometry { surface: surface.clone(), nodes: FaceNodes::Free(free, ids), flipped: face.flipped, quality: None },
         elements: face.elements,
         first: 0,
         inner: inside.points.len() as u64,

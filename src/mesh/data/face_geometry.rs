@@ -1,5 +1,6 @@
 //! Faces of a mesh on their surfaces: where their nodes lie, and which nodes of the mesh they are.
 
+use crate::mesh::data::quality::QualityTally;
 use crate::mesh::mapped::grid::{Grid, GridIds};
 use crate::mesh::mapped::trilateral::{Blocks, Lattice, LatticeIds, lattice_points};
 use crate::surface::Surface;
@@ -24,6 +25,8 @@ pub struct FaceGeometry {
     pub nodes: FaceNodes,
     /// The other side is up.
     pub flipped: bool,
+    /// Quality of its elements, once they are made; `None` for those of a kept mesh, and moved ones.
+    pub quality: Option<QualityTally>,
 }
 
 impl FaceGeometry {

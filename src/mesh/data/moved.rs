@@ -12,6 +12,7 @@ impl Mesh {
         for geometry in &mut moved.geometries.0 {
             geometry.surface = geometry.surface.moved(motion);
             geometry.flipped ^= motion.mirrors();
+            geometry.quality = None;
         }
         if motion.mirrors() {
             moved.triangles.iter_mut().for_each(|t| t.swap(1, 2));

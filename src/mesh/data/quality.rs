@@ -27,9 +27,11 @@ pub struct Quality {
     pub area: f64,
 }
 
-/// Sums over some elements; joined in order, so that the bits do not depend on threads.
-#[derive(Clone, Copy)]
-struct QualityTally {
+/// Quality of some elements as sums and extremes; joined in order, so that the bits do not depend on threads.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct QualityTally {
+    /// Number of elements.
+    count: usize,
     /// Cosine of the smallest angle so far, and of the largest.
     cosines: (f64, f64),
     quality: (f64, f64),
@@ -38,10 +40,32 @@ struct QualityTally {
 }
 
 impl QualityTally {
-    const NONE: Self = Self { cosines: (-1.0, 1.0), quality: (0.0, f64::INFINITY), aspect: 1.0, area: 0.0 };
+    const NONE: Self = Self { count: 0, cosines: (-1.0, 1.0), quality: (0.0, f64::INFINITY), aspect: 1.0, area: 0.0 };
+
+    /// That of triangles and quads by their corners among `nodes`.
+    pub fn of(triangles: &[[u32; 3]], quads: &[[u32; 4]], nodes: &[DVec3]) -> Self {
+        let node = |n: u32| nodes[n as usize];
+        let own = par::map(triangles.len().div_ceil(BATCH), |batch| {
+            let mut tally = Self::NONE;
+            triangles[batch * BATCH..].iter().take(BATCH).for_each(|t| tally.triangle(t.map(node)));
+            tally
+        });
+        let others = par::map(quads.len().div_ceil(BATCH), |batch| {
+            let mut tally = Self::NONE;
+            quads[batch * BATCH..].iter().take(BATCH).for_each(|q| tally.quad(q.map(node)));
+            tally
+        });
+        own.into_iter().chain(others).fold(Self::NONE, Self::with)
+    }
+
+    /// Cosine of the smallest corner angle; −1 without elements.
+    pub fn largest_cosine(&self) -> f64 {
+        self.cosines.0
+    }
 
     fn with(self, other: Self) -> Self {
         Self {
+            count: self.count + other.count,
             cosines: (self.cosines.0.max(other.cosines.0), self.cosines.1.min(other.cosines.1)),
             quality: (self.quality.0 + other.quality.0, self.quality.1.min(other.quality.1)),
             aspect: self.aspect.max(other.aspect),
@@ -49,28 +73,34 @@ impl QualityTally {
         }
     }
 
-    fn corner(&mut self, before: DVec3, after: DVec3) {
-        let cosine = (-before.dot(after)).clamp(-1.0, 1.0);
-        self.cosines = (self.cosines.0.max(cosine), self.cosines.1.min(cosine));
+    /// Counts the cosines of the corners of an element, one after each side, by the lengths of its sides over one.
+    fn corners<const N: usize>(&mut self, sides: &[DVec3; N], inverse: &[f64; N]) {
+        for k in 0..N {
+            let before = (k + N - 1) % N;
+            let cosine = (-sides[before].dot(sides[k]) * (inverse[before] * inverse[k])).clamp(-1.0, 1.0);
+            self.cosines = (self.cosines.0.max(cosine), self.cosines.1.min(cosine));
+        }
     }
 
-    fn sides(&mut self, lengths: &[f64]) {
+    fn aspect<const N: usize>(&mut self, lengths: &[f64; N], inverse: &[f64; N]) {
         let longest = lengths.iter().fold(0.0_f64, |m, l| m.max(*l));
-        let shortest = lengths.iter().fold(f64::INFINITY, |m, l| m.min(*l));
-        self.aspect = self.aspect.max(if shortest > 0.0 { longest / shortest } else { f64::MAX });
+        let least = inverse.iter().fold(f64::INFINITY, |m, i| m.min(*i));
+        // A side without length has no inverse.
+        self.aspect = self.aspect.max(if least > 0.0 { longest * inverse.iter().fold(0.0_f64, |m, i| m.max(*i)) } else { f64::MAX });
     }
 
     fn element(&mut self, quality: f64) {
+        self.count += 1;
         self.quality = (self.quality.0 + quality, self.quality.1.min(quality));
     }
 
     fn triangle(&mut self, [a, b, c]: [DVec3; 3]) {
         let sides = [b - a, c - b, a - c];
         let lengths = sides.map(DVec3::length);
-        let units = sides.map(DVec3::normalize_or_zero);
-        (0..3).for_each(|k| self.corner(units[(k + 2) % 3], units[k]));
-        self.sides(&lengths);
-        let double = (b - a).cross(c - a).length();
+        let inverse = lengths.map(over_one);
+        self.corners(&sides, &inverse);
+        self.aspect(&lengths, &inverse);
+        let double = sides[0].cross(sides[1]).length();
         self.area += 0.5 * double;
         // 2 r / R with r = 2 A / perimeter and R = product of sides / 4 A.
         let (sum, product) = (lengths.iter().sum::<f64>(), lengths.iter().product::<f64>());
@@ -78,18 +108,28 @@ impl QualityTally {
     }
 
     fn quad(&mut self, p: [DVec3; 4]) {
-        let sides = [0, 1, 2, 3].map(|k| p[(k + 1) % 4] - p[k]);
-        let units = sides.map(DVec3::normalize_or_zero);
-        (0..4).for_each(|k| self.corner(units[(k + 3) % 4], units[k]));
-        self.sides(&sides.map(DVec3::length));
-        let normal = (p[2] - p[0]).cross(p[3] - p[1]).normalize_or_zero();
-        let sine = |k: usize| {
-            let cross = units[(k + 3) % 4].cross(units[k]);
-            if cross.dot(normal) < 0.0 { -cross.length() } else { cross.length() }
-        };
-        self.element((0..4).map(sine).fold(f64::INFINITY, f64::min));
-        self.area += 0.5 * ((p[1] - p[0]).cross(p[2] - p[0]).length() + (p[2] - p[0]).cross(p[3] - p[0]).length());
+        let sides = [p[1] - p[0], p[2] - p[1], p[3] - p[2], p[0] - p[3]];
+        let lengths = sides.map(DVec3::length);
+        let inverse = lengths.map(over_one);
+        self.corners(&sides, &inverse);
+        self.aspect(&lengths, &inverse);
+        let normal = (p[2] - p[0]).cross(p[3] - p[1]);
+        // Squares of the sines, with the sign of the corner: their order is that of the sines.
+        let crosses = [sides[3].cross(sides[0]), sides[0].cross(sides[1]), sides[1].cross(sides[2]), sides[2].cross(sides[3])];
+        let mut least = f64::INFINITY;
+        for (k, cross) in crosses.iter().enumerate() {
+            let share = inverse[(k + 3) % 4] * inverse[k];
+            let square = cross.length_squared() * (share * share);
+            least = least.min(if cross.dot(normal) < 0.0 { -square } else { square });
+        }
+        self.element(least.abs().sqrt().copysign(least));
+        self.area += 0.5 * (crosses[1].length() + crosses[3].length());
     }
+}
+
+/// One over a length; nothing of no length.
+fn over_one(length: f64) -> f64 {
+    if length > 0.0 { 1.0 / length } else { 0.0 }
 }
 
 /// The least corner angle of a triangle or quad, radians; a quad that is to be split, by the better of its diagonals.
@@ -118,24 +158,15 @@ pub fn of_element(corners: &[DVec3]) -> f64 {
 }
 
 impl Mesh {
-    /// Shape of the elements, by corner nodes; `None` for a mesh without triangles and quads.
+    /// Shape of the elements, by corner nodes; `None` for a mesh without triangles and quads. What is known of faces is not measured again.
     pub fn quality(&self) -> Option<Quality> {
         let count = self.triangles.len() + self.quads.len();
         if count == 0 {
             return None;
         }
-        let node = |n: u32| self.nodes[n as usize];
-        let triangles = par::map(self.triangles.len().div_ceil(BATCH), |batch| {
-            let mut tally = QualityTally::NONE;
-            self.triangles[batch * BATCH..].iter().take(BATCH).for_each(|t| tally.triangle(t.map(node)));
-            tally
-        });
-        let quads = par::map(self.quads.len().div_ceil(BATCH), |batch| {
-            let mut tally = QualityTally::NONE;
-            self.quads[batch * BATCH..].iter().take(BATCH).for_each(|q| tally.quad(q.map(node)));
-            tally
-        });
-        let all = triangles.into_iter().chain(quads).fold(QualityTally::NONE, QualityTally::with);
+        let known = self.geometries.0.iter().try_fold(QualityTally::NONE, |sum, face| Some(sum.with(face.quality?)));
+        let all = known.filter(|known| known.count == count);
+        let all = all.unwrap_or_else(|| QualityTally::of(&self.triangles, &self.quads, &self.nodes));
         Some(Quality {
             min_angle: math::acos(all.cosines.0),
             max_angle: math::acos(all.cosines.1),

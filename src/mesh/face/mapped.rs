@@ -39,7 +39,7 @@ pub fn prepare(input: &Input, layout: &Layout, nodes: &Nodes, face: &Face, rows:
     let grid = Grid::new(patch.u, patch.v, values, input.tolerance);
     Ok(FaceMesh {
         inner: frame.inner(),
-        geometry: FaceGeometry { surface: surface.clone(), nodes: FaceNodes::Grid(grid, frame), flipped: face.flipped },
+        geometry: FaceGeometry { surface: surface.clone(), nodes: FaceNodes::Grid(grid, frame), flipped: face.flipped, quality: None },
         surface: face.surface,
         elements: face.elements,
         first: 0,
@@ -63,6 +63,7 @@ fn prepare_triangle(input: &Input, layout: &Layout, nodes: &Nodes, face: &Face) 
                 surface: surface.clone(),
                 nodes: FaceNodes::Lattice(Lattice { sides: values }, LatticeIds { sides: ids, first: 0 }),
                 flipped: face.flipped,
+                quality: None,
             },
             surface: face.surface,
             elements: face.elements,
@@ -85,7 +86,7 @@ fn prepare_triangle(input: &Input, layout: &Layout, nodes: &Nodes, face: &Face) 
         inner: blocks.inner as u64,
         triangles: 0,
         quads: blocks.quads.len() as u64,
-        geometry: FaceGeometry { surface: surface.clone(), nodes: FaceNodes::Blocks(blocks, places), flipped: face.flipped },
+        geometry: FaceGeometry { surface: surface.clone(), nodes: FaceNodes::Blocks(blocks, places), flipped: face.flipped, quality: None },
         surface: face.surface,
         elements: face.elements,
         first: 0,

@@ -12,6 +12,7 @@ use crate::mesh::cache::reuse::{CacheView, KeyedFaces, recall_face, recall_steps
 use crate::mesh::chart::face_input::FaceInput;
 use crate::mesh::data::face_mesh::{self, FaceMesh, FaceRanges};
 use crate::mesh::data::mesh::Mesh;
+use crate::mesh::data::quality::QualityTally;
 use crate::mesh::divide::relations::Relations;
 use crate::mesh::divide::row_demand::{self, RowDemand};
 use crate::mesh::divide::strips;
@@ -241,6 +242,7 @@ impl Attempt<'_> {
         }
         self.layout.faces.iter_mut().zip(&predicted).for_each(|(face, found)| face.foreseen = found.map(|found| found.angle));
         let face_input = FaceInput { input, layout: &*self.layout, nodes: &nodes, points: &border, wanted: &self.sizing.wanted };
+        measure_quality(&mut prepared, &mesh);
         let blames = blame::of_faces(&face_input, &self.sizing, &predicted, &prepared, &mesh);
         let sharp: Vec<Remark> = blames.iter().filter_map(|seen| seen.sharp.clone()).collect();
         let mut sizing = std::mem::take(&mut self.sizing);
@@ -301,6 +303,14 @@ impl Attempt<'_> {
         self.narrow.clear();
         (self.checked, self.shortened) = (Vec::new(), Vec::new());
         Ok(())
+    }
+}
+
+/// Notes the quality of the elements of each face.
+fn measure_quality(prepared: &mut [FaceMesh], mesh: &Mesh) {
+    let ranges = face_mesh::element_ranges(prepared);
+    for (face_mesh, (triangles, quads)) in prepared.iter_mut().zip(ranges) {
+        face_mesh.geometry.quality = Some(QualityTally::of(&mesh.triangles[triangles], &mesh.quads[quads], &mesh.nodes));
     }
 }
 

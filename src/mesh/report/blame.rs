@@ -13,6 +13,7 @@ use crate::mesh::border::layout::Face;
 use crate::mesh::chart::face_input::FaceInput;
 use crate::mesh::data::face_mesh::{FaceMesh, element_ranges};
 use crate::mesh::data::mesh::Mesh;
+use crate::mesh::data::quality::QualityTally;
 use crate::mesh::face::map_quality::{self, MAP_CHOICE, MapQuality};
 use crate::mesh::request::fault::Cure;
 use crate::mesh::request::methods::Method;
@@ -43,10 +44,14 @@ pub struct Seen {
     pub sharp: Option<Remark>,
 }
 
-/// The least angle of each face; nothing where triangles are long by their method.
+/// The least angle of each face, of which the quality is known; nothing where triangles are long by their method.
 pub fn of_faces(made: &FaceInput, sizing: &Sizing, foreseen: &[Option<MapQuality>], prepared: &[FaceMesh], mesh: &Mesh) -> Vec<Seen> {
     let ranges = element_ranges(prepared);
     par::map(prepared.len(), |f| {
+        let blunt = |quality: QualityTally| quality.largest_cosine() < math::cos(MAP_CHOICE.min_map_angle) - COSINE_ROUNDING;
+        if prepared[f].geometry.quality.is_some_and(blunt) {
+            return Seen::default();
+        }
         let elements = (&mesh.triangles[ranges[f].0.clone()], &mesh.quads[ranges[f].1.clone()]);
         of_face(made, sizing, foreseen[f].as_ref(), &made.layout.faces[f], elements, mesh).unwrap_or_default()
     })
