@@ -78,10 +78,7 @@ impl Mesh {
         }
         // Each direction adds or subtracts a pseudo-random number drawn from the nodes: the sum is not zero where an edge is used once only.
         let mut left_over = 0_u64;
-        each_side(self, |a, b| {
-            let drawn = drawn(a.min(b), a.max(b));
-            left_over = left_over.wrapping_add(if a > b { drawn.wrapping_neg() } else { drawn });
-        });
+        each_side(self, |a, b| left_over = left_over.wrapping_add(signed(a, b)));
         left_over == 0 && SidesByNode::new(self).edges().all(|edge| (edge.forwards, edge.backwards) == (1, 1))
     }
 
@@ -97,12 +94,16 @@ impl Mesh {
     }
 }
 
-/// A pseudo-random number for an edge: sums of others equal it by chance only (the finaliser of SplitMix [Steele, Lea & Flood 2014]).
-pub fn drawn(low: u32, high: u32) -> u64 {
+/// A pseudo-random number for an edge, negative (modulo 2^64) from its higher node to its lower one: sums of others equal it by chance only.
+/// The finaliser of SplitMix [Steele, Lea & Flood 2014].
+pub fn signed(from: u32, to: u32) -> u64 {
+    let (low, high) = (from.min(to), from.max(to));
     let mut x = (u64::from(high) << 32 | u64::from(low)).wrapping_add(0x9e37_79b9_7f4a_7c15);
     x = (x ^ x >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     x = (x ^ x >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-    x ^ x >> 31
+    // Minus without a branch.
+    let sign = u64::from(from > to).wrapping_neg();
+    (x ^ sign).wrapping_sub(sign)
 }
 
 #[cfg(test)]

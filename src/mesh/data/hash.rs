@@ -11,10 +11,7 @@ const ROUNDS: usize = 4;
 
 /// One step of mixing (the finaliser of SplitMix64 [Steele, Lea & Flood 2014]).
 fn mix(a: u64, b: u64) -> u64 {
-    let mut x = a.rotate_left(23) ^ b.wrapping_mul(0x9e37_79b9_7f4a_7c15);
-    x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    x ^ (x >> 31)
+    mix_spread(a, spread(b))
 }
 
 /// A number for a group: what it is called does not matter, what it holds does.
@@ -23,28 +20,90 @@ fn of_group(group: &Group) -> u64 {
     parts.iter().fold(parts.len() as u64, |h, part| mix(h, part.len() as u64))
 }
 
-/// What a cell is made of: corner nodes first, then mid nodes; which kind.
+/// The second operand of [`mix`] before its multiplication, for a colour that several cells mix in.
+fn spread(colour: u64) -> u64 {
+    colour.wrapping_mul(0x9e37_79b9_7f4a_7c15)
+}
+
+/// [`mix`] with a second operand that is [`spread`].
+fn mix_spread(a: u64, spread: u64) -> u64 {
+    let mut x = a.rotate_left(23) ^ spread;
+    x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    x ^ (x >> 31)
+}
+
+/// An element of `N` corners as the hash sees it; `kind` tells lines, triangles and quads apart.
 #[derive(Clone, Copy)]
-struct HashedElement<'a> {
+struct HashedElement<'a, const N: usize> {
     kind: u64,
-    corners: &'a [u32],
+    corners: &'a [u32; N],
+    /// Its mid nodes; none of first order.
     mids: &'a [u32],
 }
 
-impl HashedElement<'_> {
-    /// The colours round the cell, as seen from corner `from`.
-    fn seen_from(&self, from: usize, colours: &[u64]) -> u64 {
-        let n = self.corners.len();
-        let mut h = mix(self.kind, n as u64);
-        for k in 0..n {
-            h = mix(h, colours[self.corners[(from + k) % n] as usize]);
-        }
-        h
+impl<const N: usize> HashedElement<'_, N> {
+    /// The colours round the element, as seen from each corner.
+    fn seen(&self, colours: &[u64]) -> [u64; N] {
+        let start = mix(self.kind, N as u64);
+        let own = self.corners.map(|n| spread(colours[n as usize]));
+        std::array::from_fn(|from| (0..N).fold(start, |h, k| mix_spread(h, own[(from + k) % N])))
     }
 
-    /// The same from every corner, in no order: where the cell begins does not matter.
-    fn colour(&self, colours: &[u64]) -> u64 {
-        (0..self.corners.len()).fold(self.kind, |sum, k| sum.wrapping_add(mix(self.kind, self.seen_from(k, colours))))
+    /// What is seen from all corners, in no order: where the element begins does not matter.
+    fn colour(&self, seen: [u64; N]) -> u64 {
+        seen.iter().fold(self.kind, |sum, from| sum.wrapping_add(mix(self.kind, *from)))
+    }
+
+    /// Adds what its nodes see of it to their next colours.
+    fn refine(&self, tag: u64, colours: &[u64], next: &mut [u64]) {
+        let seen = self.seen(colours);
+        for (corner, from) in self.corners.iter().zip(seen) {
+            let own = &mut next[*corner as usize];
+            *own = own.wrapping_add(mix(tag, from));
+        }
+        if self.mids.is_empty() {
+            return;
+        }
+        let all = mix(self.colour(seen), tag);
+        for (side, mid) in self.mids.iter().enumerate() {
+            // A mid node knows the edge it is on.
+            let ends = [side, (side + 1) % N].map(|c| colours[self.corners[c] as usize]);
+            let own = &mut next[*mid as usize];
+            *own = own.wrapping_add(mix(all, ends[0].wrapping_add(ends[1])));
+        }
+    }
+}
+
+/// What is done with every element in turn, lines first, then triangles and quads; `k` counts all of them.
+trait VisitElements {
+    fn element<const N: usize>(&mut self, k: usize, element: HashedElement<N>);
+}
+
+/// One round of colour refinement.
+struct Refinement<'a> {
+    tags: &'a [u64],
+    colours: &'a [u64],
+    next: Vec<u64>,
+}
+
+impl VisitElements for Refinement<'_> {
+    fn element<const N: usize>(&mut self, k: usize, element: HashedElement<N>) {
+        element.refine(self.tags[k], self.colours, &mut self.next);
+    }
+}
+
+/// The sum over the colours of all elements.
+struct ElementSum<'a> {
+    tags: &'a [u64],
+    colours: &'a [u64],
+    sum: u64,
+}
+
+impl VisitElements for ElementSum<'_> {
+    fn element<const N: usize>(&mut self, k: usize, element: HashedElement<N>) {
+        let colour = element.colour(element.seen(self.colours));
+        self.sum = self.sum.wrapping_add(mix(mix(5, self.tags[k]), colour));
     }
 }
 
@@ -59,25 +118,16 @@ impl Mesh {
             self.tag(group, number, &mut tags);
         }
         for _ in 0..ROUNDS {
-            let mut next: Vec<u64> = colours.iter().map(|c| mix(3, *c)).collect();
-            self.each_cell(|k, cell| {
-                for (from, corner) in cell.corners.iter().enumerate() {
-                    let seen = mix(tags[k], cell.seen_from(from, &colours));
-                    next[*corner as usize] = next[*corner as usize].wrapping_add(seen);
-                }
-                let (n, all) = (cell.corners.len(), cell.colour(&colours));
-                for (side, mid) in cell.mids.iter().enumerate() {
-                    // A mid node knows the edge it is on.
-                    let ends = [side, (side + 1) % n].map(|c| colours[cell.corners[c] as usize]);
-                    let seen = mix(mix(all, tags[k]), ends[0].wrapping_add(ends[1]));
-                    next[*mid as usize] = next[*mid as usize].wrapping_add(seen);
-                }
-            });
-            colours = next;
+            let next = colours.iter().map(|c| mix(3, *c)).collect();
+            let mut round = Refinement { tags: &tags, colours: &colours, next };
+            self.each_element(&mut round);
+            colours = round.next;
         }
         let mut sum = mix(u64::from(self.order), self.nodes.len() as u64);
         sum = colours.iter().fold(sum, |s, c| s.wrapping_add(mix(4, *c)));
-        self.each_cell(|k, cell| sum = sum.wrapping_add(mix(mix(5, tags[k]), cell.colour(&colours))));
+        let mut elements = ElementSum { tags: &tags, colours: &colours, sum };
+        self.each_element(&mut elements);
+        let sum = elements.sum;
         mix(sum, self.groups.iter().fold(0_u64, |s, g| s.wrapping_add(mix(6, of_group(g)))))
     }
 
@@ -93,20 +143,20 @@ impl Mesh {
         all.for_each(|k| tags[k] = tags[k].wrapping_add(mix(7, number)));
     }
 
-    fn each_cell(&self, mut visit: impl FnMut(usize, HashedElement)) {
+    fn each_element(&self, visitor: &mut impl VisitElements) {
         let none: &[u32] = &[];
         let mut k = 0;
         for (n, corners) in job::looking(self.lines.iter().enumerate()) {
             let mids = self.line_mids.get(n).map_or(none, std::slice::from_ref);
-            visit(k, HashedElement { kind: 2, corners, mids });
+            visitor.element(k, HashedElement { kind: 2, corners, mids });
             k += 1;
         }
         for (n, corners) in job::looking(self.triangles.iter().enumerate()) {
-            visit(k, HashedElement { kind: 3, corners, mids: self.triangle_mids.get(n).map_or(none, |m| m) });
+            visitor.element(k, HashedElement { kind: 3, corners, mids: self.triangle_mids.get(n).map_or(none, |m| m) });
             k += 1;
         }
         for (n, corners) in job::looking(self.quads.iter().enumerate()) {
-            visit(k, HashedElement { kind: 4, corners, mids: self.quad_mids.get(n).map_or(none, |m| m) });
+            visitor.element(k, HashedElement { kind: 4, corners, mids: self.quad_mids.get(n).map_or(none, |m| m) });
             k += 1;
         }
     }

@@ -7,35 +7,51 @@ impl Mesh {
     /// Number of parts that share no node with each other: elements joined by nodes are one part, and a node that is an element of
     /// its own is one where no other element has it.
     pub fn parts(&self) -> usize {
-        let mut parent: Vec<u32> = (0..self.nodes.len() as u32).collect();
-        let mut used = vec![false; self.nodes.len()];
+        let mut parent = vec![UNUSED; self.nodes.len()];
+        let mut roots = 0;
         let mut one = |corners: &[u32]| {
-            for pair in corners.windows(2) {
-                join(&mut parent, pair[0], pair[1]);
+            let Some((first, others)) = corners.split_first() else { return };
+            let mut root = first_of(&mut parent, *first);
+            if root == UNUSED {
+                (parent[*first as usize], root) = (*first, *first);
+                roots += 1;
             }
-            corners.iter().for_each(|n| used[*n as usize] = true);
+            for other in others {
+                let own = first_of(&mut parent, *other);
+                if own == UNUSED {
+                    parent[*other as usize] = root;
+                } else if own != root {
+                    let low = own.min(root);
+                    parent[own.max(root) as usize] = low;
+                    (root, roots) = (low, roots - 1);
+                }
+            }
         };
         self.lines.iter().for_each(|e| one(e));
         job::looking(&self.triangles).for_each(|e| one(e));
         job::looking(&self.quads).for_each(|e| one(e));
         self.points.iter().for_each(|n| one(&[*n]));
-        (0..self.nodes.len()).filter(|n| used[*n] && parent[*n] as usize == *n).count()
+        roots
     }
 }
 
-/// The first node of a part; halves the way there [Tarjan & van Leeuwen 1984].
+/// A node that no element before has had.
+const UNUSED: u32 = u32::MAX;
+
+/// The first node of the part of a node, or [`UNUSED`]; halves the way there [Tarjan & van Leeuwen 1984].
 fn first_of(parent: &mut [u32], mut n: u32) -> u32 {
-    while parent[n as usize] != n {
-        parent[n as usize] = parent[parent[n as usize] as usize];
-        n = parent[n as usize];
+    loop {
+        let up = parent[n as usize];
+        if up == n || up == UNUSED {
+            return up;
+        }
+        let next = parent[up as usize];
+        if next == up {
+            return up;
+        }
+        parent[n as usize] = next;
+        n = next;
     }
-    n
-}
-
-/// Makes the parts of two nodes one.
-fn join(parent: &mut [u32], a: u32, b: u32) {
-    let (a, b) = (first_of(parent, a), first_of(parent, b));
-    parent[a.max(b) as usize] = a.min(b);
 }
 
 #[cfg(test)]

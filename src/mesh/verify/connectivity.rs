@@ -8,7 +8,7 @@
 use std::collections::BTreeMap;
 
 use crate::base::job;
-use crate::mesh::data::edge_uses::drawn;
+use crate::mesh::data::edge_uses::signed;
 use crate::mesh::request::methods::Elements;
 use crate::mesh::verify::defect::Defect;
 
@@ -45,14 +45,37 @@ struct EdgeUses {
 
 impl EdgeUses {
     fn add(&mut self, a: u32, b: u32, first: u32) {
-        let (low, high) = (a.min(b), a.max(b));
+        let low = a.min(b);
         if low < first {
-            self.near.push((low, high, a > b));
+            self.near.push((low, a.max(b), a > b));
         } else {
-            let drawn = drawn(low, high);
-            self.sum = self.sum.wrapping_add(if a > b { drawn.wrapping_neg() } else { drawn });
+            self.sum = self.sum.wrapping_add(signed(a, b));
             self.inside += 1;
         }
+    }
+
+    /// Counts the sides of an element, and marks which of the face's own nodes, from `first` on, it has.
+    fn element<const N: usize>(&mut self, corners: &[u32; N], first: u32, used: &mut [bool]) -> std::result::Result<(), Defect> {
+        for (k, a) in corners.iter().enumerate() {
+            if corners[k + 1..].contains(a) {
+                return Err(Defect::Node(*a));
+            }
+            if *a >= first {
+                *used.get_mut((a - first) as usize).ok_or(Defect::Node(*a))? = true;
+            }
+        }
+        if corners.iter().all(|a| *a >= first) {
+            self.add_inner(corners);
+        } else {
+            (0..N).for_each(|k| self.add(corners[k], corners[(k + 1) % N], first));
+        }
+        Ok(())
+    }
+
+    /// The sides of an element without a node of the border.
+    fn add_inner<const N: usize>(&mut self, corners: &[u32; N]) {
+        self.sum = (0..N).fold(self.sum, |sum, k| sum.wrapping_add(signed(corners[k], corners[(k + 1) % N])));
+        self.inside += N as u64;
     }
 }
 
@@ -82,27 +105,10 @@ impl Claim<'_> {
     fn edge_uses(&self) -> std::result::Result<EdgeUses, Defect> {
         let mut uses = EdgeUses::default();
         let (first, own) = self.own;
-        let mut used = vec![0_u64; own.div_ceil(64) as usize];
-        let mut add = |corners: &[u32]| {
-            for (k, &a) in corners.iter().enumerate() {
-                let b = corners[(k + 1) % corners.len()];
-                if a == b || corners.len() == 4 && k < 2 && a == corners[k + 2] {
-                    return Err(Defect::Node(a));
-                }
-                if let Some(at) = a.checked_sub(first) {
-                    if at >= own {
-                        return Err(Defect::Node(a));
-                    }
-                    used[at as usize / 64] |= 1 << (at % 64);
-                }
-                uses.add(a, b, first);
-            }
-            Ok(())
-        };
-        job::looking(self.triangles).try_for_each(|t| add(t))?;
-        job::looking(self.quads).try_for_each(|q| add(q))?;
-        let loose = (0..own).find(|n| used[*n as usize / 64] >> (n % 64) & 1 == 0);
-        loose.map_or(Ok(uses), |n| Err(Defect::Loose(first + n)))
+        let mut used = vec![false; own as usize];
+        job::looking(self.triangles).try_for_each(|t| uses.element(t, first, &mut used))?;
+        job::looking(self.quads).try_for_each(|q| uses.element(q, first, &mut used))?;
+        used.iter().position(|used| !used).map_or(Ok(uses), |n| Err(Defect::Loose(first + n as u32)))
     }
 
     /// Edges that touch border nodes: the number of those inside the face, and of the lines' and points' nodes inside it.
