@@ -106,6 +106,7 @@ impl Shape {
             Self::Blend(s) => s.jets(us, vs, out),
             Self::Sweep(s) => s.jets(us, vs, out),
             Self::Framed(s) => s.jets(us, vs, out),
+            Self::Nurbs(s) => s.jets(us, vs, out),
             _ => {
                 for &(v, side_v) in vs {
                     out.extend(us.iter().map(|&(u, side_u)| self.jet(u, v, (side_u, side_v))));

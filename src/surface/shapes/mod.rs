@@ -13,6 +13,7 @@ pub mod height_field;
 pub mod matrices;
 pub mod net_enclosure;
 pub mod nurbs;
+mod nurbs_grid;
 pub mod powers;
 pub mod speed_map;
 pub mod sweep;

@@ -3,7 +3,6 @@
 use glam::{DVec3, DVec4};
 
 use crate::base::bbox::Box3;
-use crate::base::par;
 use crate::base::tolerance::{EPSILON, Tolerance};
 use crate::geometry::shapes::nurbs::{COMMON_DEGREE, MAX_DEGREE, projected, weighted};
 use crate::geometry::{Motion, Nurbs};
@@ -26,22 +25,19 @@ pub struct NurbsSurface {
 
 crate::content!(NurbsSurface { degree, knots, poles, counts });
 
-/// Rows of points made by one thread at a time.
-const ROWS: usize = 16;
-
 /// Values and two derivatives of the basis functions that do not vanish on one span.
-struct Basis<const N: usize> {
-    first: usize,
+pub(super) struct Basis<const N: usize> {
+    pub first: usize,
     n: usize,
     values: [[f64; 3]; N],
 }
 
 /// Functions of one span up to the degree that most surfaces keep to, and up to any.
-const COMMON: usize = COMMON_DEGREE + 1;
-const MOST: usize = MAX_DEGREE + 1;
+pub(super) const COMMON: usize = COMMON_DEGREE + 1;
+pub(super) const MOST: usize = MAX_DEGREE + 1;
 
 impl<const N: usize> Basis<N> {
-    fn values(&self) -> &[[f64; 3]] {
+    pub fn values(&self) -> &[[f64; 3]] {
         &self.values[..self.n]
     }
 }
@@ -52,7 +48,7 @@ pub(crate) fn multiplicity(knots: &[f64], knot: f64) -> usize {
 }
 
 /// The basis at a parameter [Piegl & Tiller 1997, A2.2 and eq. 2.9].
-fn basis<const N: usize>(knots: &[f64], degree: usize, t: f64, side: OneSided) -> Basis<N> {
+pub(super) fn basis<const N: usize>(knots: &[f64], degree: usize, t: f64, side: OneSided) -> Basis<N> {
     let (low, high) = (degree, knots.len() - degree - 2);
     let inner = &knots[low + 1..=high];
     let reached = |k: &f64| if side == OneSided::Before { *k < t - EPSILON } else { *k <= t + EPSILON };
@@ -156,7 +152,7 @@ impl NurbsSurface {
     }
 
     /// Whether evaluation keeps to small arrays.
-    fn is_common(&self) -> bool {
+    pub(super) fn is_common(&self) -> bool {
         self.degree.0.max(self.degree.1) <= COMMON_DEGREE
     }
 
@@ -191,29 +187,6 @@ impl NurbsSurface {
             let poles = (0..self.counts.0).map(|i| sum(&b, &|j| self.pole(i, j))).collect();
             Nurbs::new(self.degree.0, self.knots.0.clone(), poles)
         }
-    }
-
-    /// Points of the tensor grid, u fastest: the net is contracted once per row.
-    pub fn grid(&self, us: &[f64], vs: &[f64], out: &mut [DVec3]) {
-        if self.is_common() { self.grid_on::<COMMON>(us, vs, out) } else { self.grid_on::<MOST>(us, vs, out) }
-    }
-
-    fn grid_on<const N: usize>(&self, us: &[f64], vs: &[f64], out: &mut [DVec3]) {
-        let columns: Vec<Basis<N>> = us.iter().map(|&u| basis(&self.knots.0, self.degree.0, u, OneSided::After)).collect();
-        let width = us.len().max(1);
-        par::chunks_mut(out, width * ROWS, |chunk, part| {
-            let mut row = vec![DVec4::ZERO; self.counts.0];
-            for (line, &v) in part.chunks_exact_mut(width).zip(&vs[(chunk * ROWS).min(vs.len())..]) {
-                let b: Basis<N> = basis(&self.knots.1, self.degree.1, v, OneSided::After);
-                for (i, q) in row.iter_mut().enumerate() {
-                    *q = b.values().iter().enumerate().fold(DVec4::ZERO, |sum, (j, y)| sum + self.pole(i, b.first + j) * y[0]);
-                }
-                for (p, a) in line.iter_mut().zip(&columns) {
-                    let q = a.values().iter().zip(&row[a.first..]).fold(DVec4::ZERO, |sum, (x, q)| sum + *q * x[0]);
-                    *p = projected(q);
-                }
-            }
-        });
     }
 
     /// Distinct knots inside, u and v.

@@ -3,7 +3,8 @@
 //! Hulls of differences, and the quotient rule where weights differ, overestimate many times over a span in which a net runs at
 //! uneven speed or turns through a good part of a circle. Halves of a box decide: where they are hardly better, the box is small enough.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
+use std::rc::Rc;
 
 use glam::{DVec2, DVec3, DVec4};
 
@@ -94,9 +95,11 @@ impl ThirdDerivativeBounds {
 
     /// Halves boxes for as long as bounds get much better.
     fn halve(&mut self, net: &NurbsSurface, knots: (&[f64], &[f64]), normal: &impl Fn(f64, f64) -> DVec3) {
-        let over = |(low, high): Area| {
+        let mut strips = KnownStrips { net, known: BTreeMap::new() };
+        let mut over = |(low, high): Area| {
             let middle = 0.5 * (low + high);
-            net.third(&net.strip(true, (low.x, high.x)), &net.strip(false, (low.y, high.y)), normal(middle.x, middle.y))
+            let (u, v) = (strips.of(true, (low.x, high.x)), strips.of(false, (low.y, high.y)));
+            net.third(&u, &v, normal(middle.x, middle.y))
         };
         let n = self.lines.0.len() - 1;
         let mut open: VecDeque<(usize, Area, [u8; 2])> = VecDeque::new();
@@ -169,6 +172,20 @@ impl ThirdDerivativeBounds {
         if area.1[*axis] >= middle {
             self.add(*first as usize + 1, after, area, along, bounds);
         }
+    }
+}
+
+/// Strips that were made: boxes beside each other have one in common.
+struct KnownStrips<'a> {
+    net: &'a NurbsSurface,
+    /// By direction and the bits of both ends.
+    known: BTreeMap<(bool, u64, u64), Rc<NetStrip>>,
+}
+
+impl KnownStrips<'_> {
+    fn of(&mut self, in_u: bool, ends: (f64, f64)) -> Rc<NetStrip> {
+        let make = || Rc::new(self.net.strip(in_u, ends));
+        self.known.entry((in_u, ends.0.to_bits(), ends.1.to_bits())).or_insert_with(make).clone()
     }
 }
 
