@@ -98,9 +98,11 @@ where
         made
     }
 
+    /// Point and first derivatives: nothing here takes second ones, which are left out.
     fn jet(&self, u: f64, v: f64) -> Jet2 {
         work::spend(self.cost);
-        self.evaluator.jet(u, v)
+        let [p, du, dv] = self.evaluator.tangents(u, v);
+        Jet2 { p, du, dv, ..Jet2::default() }
     }
 
     /// ∫ f du between two places without a break.
