@@ -67,7 +67,8 @@ def chord_error(surface, points, uv, corners):
         at = np.einsum("wk,tkd->twd", PLACES, uv[part]).reshape(-1, 2)
         about, _, _ = offset(surface, p, at[:, 0], at[:, 1])
         far = about >= NEAR_WORST * max(worst, about.max())
-        worst = max(worst, distance(surface, p[far], at[far, 0], at[far, 1]).max())
+        if far.any():
+            worst = max(worst, distance(surface, p[far], at[far, 0], at[far, 1]).max())
     return float(worst)
 
 
