@@ -6,7 +6,7 @@ measured at 25 places of each triangle, by Gauss-Newton from their (u, v); `over
 Angles are those of triangles without a corner of the net. With --occt the same faces are meshed by OpenCASCADE's incremental mesher
 beside; with --truth its figures are kept in a file and taken from there the next time. --write writes ten small nets with the
 counts of OpenCASCADE, for `tests/random_nets.rs`. Times are CPU seconds of one thread: ours of the stage, theirs of the mesher
-alone. Needs `pip install cadquery-ocp numpy`."""
+alone. Needs `pip install cadquery-ocp numpy scipy`."""
 import argparse
 import json
 import pathlib
@@ -19,6 +19,7 @@ import numpy as np
 from nets import Net
 from quality import Cpu, triangles
 from random_plates import read_obj, table
+from scipy.spatial import cKDTree
 
 # Places of a triangle at which its distance is measured: those of a grid of six parts along its sides, without the corners.
 PARTS = 6
@@ -46,13 +47,13 @@ def distance(surface, points, u, v, steps=4):
     return np.linalg.norm(points - surface.evaluate(u, v)[0], axis=1)
 
 
-def feet(surface, points, n=200):
+def feet(surface, points, n=400):
     """(u, v) of points on the surface: by Gauss-Newton from the nearest of a grid."""
     t = np.linspace(0, 1, n)
     u, v = (x.ravel() for x in np.meshgrid(t, t, indexing="ij"))
-    grid = surface.evaluate(u, v)[0].astype(np.float32)
-    squares = (grid**2).sum(1)
-    nearest = np.concatenate([np.argmin(squares[:, None] - 2 * grid @ part.T.astype(np.float32), 0) for part in np.array_split(points, len(points) // 200 + 1)])
+    a, b = surface.u.matrices(t, 0)[0], surface.v.matrices(t, 0)[0]
+    grid = np.einsum("xi,ijk,yj->xyk", a, surface.poles, b, optimize=True).reshape(-1, 4)
+    nearest = cKDTree(grid[:, :3] / grid[:, 3:]).query(points)[1]
     u, v = u[nearest], v[nearest]
     for _ in range(8):
         _, u, v = offset(surface, points, u, v)
@@ -159,7 +160,7 @@ def face(net):
     return fix.Face()
 
 
-def theirs(net, limit, most=20_000):
+def theirs(net, limit, most=5_000):
     from OCP.BRep import BRep_Tool
     from OCP.BRepMesh import BRepMesh_IncrementalMesh
     from OCP.IMeshTools import IMeshTools_Parameters
