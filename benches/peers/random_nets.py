@@ -160,7 +160,7 @@ def face(net):
     return fix.Face()
 
 
-def theirs(net, limit, most=5_000):
+def theirs(net, limit, most=2_000):
     from OCP.BRep import BRep_Tool
     from OCP.BRepMesh import BRepMesh_IncrementalMesh
     from OCP.IMeshTools import IMeshTools_Parameters
