@@ -32,6 +32,9 @@ pub struct Contact {
 
 /// Work of two curves whose boxes touch, before they are looked at: at least so much is done with them.
 const OF_A_PAIR: u64 = 32;
+/// Tolerances that the far end of the shorter of two straight curves with a common end is off the other one where they meet nowhere else:
+/// four times the distance within which the search looks for ends.
+const CLEAR: f64 = 256.0;
 /// Pairs of one curve from which on its pieces are kept from one to the next.
 const MANY_PAIRS: u32 = 8;
 /// Pairs handed to a thread at once.
@@ -105,7 +108,7 @@ fn of_pairs(curves: &[NetCurve], pairs: &[(u32, u32)], tolerance: &Tolerance, jo
         for &(a, b) in chunk {
             let (a, b) = if curves[a as usize].name <= curves[b as usize].name { (a, b) } else { (b, a) };
             let (first, second) = (&curves[a as usize].curve, &curves[b as usize].curve);
-            if let Some((s, at)) = corner(first, second) {
+            if let Some((s, at)) = corner(first, second, tolerance) {
                 contacts.push(Contact { curves: [a, b], s, at, to: None });
                 continue;
             }
@@ -140,13 +143,17 @@ pub fn ranks(curves: &[NetCurve]) -> Vec<u32> {
     rank
 }
 
-/// Two straight curves with a common end that part at a right angle or more: they can meet nowhere else.
-fn corner(a: &Curve, b: &Curve) -> Option<([f64; 2], DVec3)> {
+/// Two straight curves with a common end that part at a right angle or more, or far enough: they can meet nowhere else.
+fn corner(a: &Curve, b: &Curve, tolerance: &Tolerance) -> Option<([f64; 2], DVec3)> {
     let (&Shape::Line(a0, a1), &Shape::Line(b0, b1)) = (a.shape(), b.shape()) else { return None };
     let ends = [(a0, a1, b0, b1), (a0, a1, b1, b0), (a1, a0, b0, b1), (a1, a0, b1, b0)];
     let (p, far_a, _, far_b) = ends.into_iter().find(|(p, _, q, _)| p == q)?;
     let s = |curve: &Curve, start: DVec3| if start == p { 0.0 } else { curve.length() };
-    ((far_a - p).dot(far_b - p) <= 0.0).then(|| ([s(a, a0), s(b, b0)], p))
+    let (u, v) = (far_a - p, far_b - p);
+    // The far end of the shorter one is |u × v| / max(|u|, |v|) off the line of the other.
+    let clear = CLEAR * tolerance.point;
+    let apart = || u.cross(v).length_squared() > clear * clear * u.length_squared().max(v.length_squared());
+    (u.dot(v) <= 0.0 || apart()).then(|| ([s(a, a0), s(b, b0)], p))
 }
 
 fn contact(curves: [u32; 2], [a, b]: [&Curve; 2], hit: Hit) -> Contact {
