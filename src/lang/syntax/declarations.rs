@@ -1,7 +1,7 @@
 //! The declarations of a script: of those that share a shape, places and names are kept, and the tree is made when it is asked for.
 //!
 //! Data written as a script (`point p17 = (1.0, 2.0, 0)`, 10^5 times) has a handful of shapes. A tree of its own for each line takes
-//! fifteen times the memory of what sets the lines apart, and each is looked at once.
+//! six times the memory of what sets the lines apart, and each is looked at once.
 
 use std::collections::BTreeMap;
 use std::fmt;
