@@ -15,7 +15,7 @@ fn run(text: &str) {
     on_big_stack(|| {
         let stages = Stages::new(&clock);
         let mut cx = Cx::new(&files, &stages, &job);
-        cx.load(&Entry { name: "bench.loft", path: "bench.loft", text, sets: &[], row: None });
+        cx.load(Entry { name: "bench.loft", path: "bench.loft", text: text.into(), sets: &[], row: None });
         cx.evaluate_all();
         assert!(!cx.has_errors());
     });

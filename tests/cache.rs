@@ -66,11 +66,13 @@ fn process(script: &Path, text: &str, out: &Path, cache: Option<&Path>) -> Found
     let task = Task {
         name: "model.loft",
         text: text.as_bytes(),
+        shared: None,
         sets: &[],
         row: None,
         strict: false,
         keep_going: true,
         full: true,
+        curves: true,
         picture: None,
         clock: &clock,
     };

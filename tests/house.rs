@@ -94,16 +94,16 @@ const OUTSIDE: &[&str] = &["std::fs", "std::env", "std::time", "println!", "epri
 
 /// Lines a floor may have, tests included; a higher number is a change of its own, with the reason.
 const CEILINGS: &[(&str, usize)] = &[
-    ("base", 4_400),
-    ("geometry", 6_050),
-    ("network", 4_900),
+    ("base", 4_500),
+    ("geometry", 6_100),
+    ("network", 5_150),
     ("surface", 28_100),
     ("model", 6_900),
     ("mesh", 27_700),
     ("io", 17_200),
     ("draw", 3_000),
-    ("lang", 29_750),
-    ("session", 11_900),
+    ("lang", 30_250),
+    ("session", 12_000),
     ("cli", 4_900),
     ("library", 2_000),
 ];

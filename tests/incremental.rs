@@ -45,11 +45,13 @@ impl Folder {
         let task = Task {
             name: "model.loft",
             text: text.as_bytes(),
+            shared: None,
             sets: &[],
             row: None,
             strict: false,
             keep_going: true,
             full: true,
+            curves: true,
             picture: None,
             clock: &clock,
         };
@@ -381,11 +383,13 @@ fn told(text: &str, kept: Option<&mut Kept>) -> Vec<(String, String, Option<Stri
     let task = Task {
         name: "model.loft",
         text: text.as_bytes(),
+        shared: None,
         sets: &[],
         row: None,
         strict: false,
         keep_going: false,
         full: true,
+        curves: true,
         picture: None,
         clock: &clock,
     };

@@ -555,11 +555,13 @@ fn said_from_nothing(text: &str) -> Vec<(String, Value)> {
     let task = Task {
         name: "edited.loft",
         text: text.as_bytes(),
+        shared: None,
         sets: &[],
         row: None,
         strict: false,
         keep_going: false,
         full: false,
+        curves: true,
         picture: None,
         clock: &|| 0.0,
     };

@@ -669,6 +669,17 @@ fn networks_of_known_size_are_counted_exactly() {
     assert_eq!(scattered.links.len() + 2_000, 1_000 + 2 * scattered.nodes.len() - 2_000, "each crossing adds a node and two links");
 }
 
+/// The largest ones of `cargo bench --bench network`, at its tolerance.
+#[test]
+fn large_networks_are_counted_exactly() {
+    type Case = (fn(usize) -> Vec<Input>, usize, f64, (usize, usize));
+    let cases: [Case; 2] = [(nets::planar, 300, 141.0, (34_464, 68_028)), (nets::ruled, 100, 245.0, (25_600, 50_300))];
+    for (make, n, diagonal, expected) in cases {
+        let (network, _) = network_with(make(n), &[], &Tolerance::new(1e-8 * diagonal, diagonal));
+        assert_eq!((network.nodes.len(), network.links.len()), expected, "{n}");
+    }
+}
+
 #[test]
 fn derivatives_of_chains_are_by_arc_length() {
     let ellipse = build::ellipse(p(5., 1., 0.), p(6., 0., 0.), p(0., 2., 0.), 0.0, 2.0, O).unwrap();

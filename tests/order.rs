@@ -87,10 +87,12 @@ fn written(folder: &Path, text: &str) -> (Vec<(String, Vec<u8>)>, Vec<String>) {
     let task = Task {
         name: "model.loft",
         text: text.as_bytes(),
+        shared: None,
         sets: &[],
         strict: false,
         keep_going: false,
         full: true,
+        curves: true,
         picture: None,
         row: None,
         clock: &clock,

@@ -60,7 +60,7 @@ fn check(script: &str, files: &Memory) -> Result<(), String> {
         let clock = || 0.0;
         let stages = Stages::new(&clock);
         let mut cx = Cx::new(files, &stages, &job);
-        cx.load(&Entry { name: "spec.loft", path: "spec.loft", text: script, sets: &[], row: None });
+        cx.load(Entry { name: "spec.loft", path: "spec.loft", text: script.into(), sets: &[], row: None });
         cx.evaluate_all();
         let _ = cx.model(ModuleId::MAIN);
         for (_, mesh) in cx.mesh_values() {

@@ -83,30 +83,30 @@ impl BoxTree {
     pub fn pairs(&self, margin: f64, work: u64) -> Vec<(u32, u32)> {
         let mut pairs = Vec::new();
         let Some(top) = self.levels.len().checked_sub(1) else { return pairs };
-        // Nodes of one level, to be compared with each other; equal ones with themselves.
+        // Nodes of one level that touch, to be looked into; equal ones touch themselves.
         let mut stack: Vec<(usize, usize, usize)> = Vec::new();
-        let n = self.levels[top].len();
-        for a in 0..n {
-            stack.extend((a..n).map(|b| (top, a, b)));
-        }
-        while let Some((level, a, b)) = stack.pop() {
-            job::poll();
+        let mut look = |stack: &mut Vec<(usize, usize, usize)>, level: usize, a: usize, others: std::ops::Range<usize>| {
             let boxes = &self.levels[level];
-            if a != b && !boxes[a].touches(&boxes[b], margin) {
-                continue;
-            }
-            if level == 0 {
-                if a != b {
+            let own = &boxes[a];
+            for b in others.filter(|&b| a == b || own.touches(&boxes[b], margin)) {
+                if level > 0 {
+                    stack.push((level, a, b));
+                } else if a != b {
                     work::spend(work);
                     let (a, b) = (self.items[a], self.items[b]);
                     pairs.push((a.min(b), a.max(b)));
                 }
-                continue;
             }
-            let below = level - 1;
+        };
+        let n = self.levels[top].len();
+        for a in 0..n {
+            look(&mut stack, top, a, a..n);
+        }
+        while let Some((level, a, b)) = stack.pop() {
+            job::poll();
             for c in self.children(level, a) {
                 let others = if a == b { c..self.children(level, a).end } else { self.children(level, b) };
-                stack.extend(others.map(|d| (below, c, d)));
+                look(&mut stack, level - 1, c, others);
             }
         }
         pairs.sort_unstable();

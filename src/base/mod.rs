@@ -5,6 +5,7 @@ pub mod boxtree;
 pub mod bytes;
 pub mod digest;
 pub mod fault;
+pub mod few;
 pub mod ids;
 pub mod job;
 pub mod limits;

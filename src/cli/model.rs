@@ -18,13 +18,14 @@ use crate::session::json::{cases_text, report_text};
 use crate::session::kept::Kept;
 use crate::session::report::{Case, Cases, VERSION};
 use crate::session::run::{self, Again, Outcome, Task};
+use crate::session::task::ScriptBytes;
 
 /// One script with all its rows.
 pub struct Model<'a> {
     /// As named on the command line.
     pub name: &'a str,
     /// Its bytes.
-    pub text: Vec<u8>,
+    pub text: ScriptBytes,
     /// Where it may read and write.
     pub disk: Disk,
 }
@@ -82,7 +83,7 @@ pub fn open<'a>(name: &'a str, options: &Options, outputs: Outputs) -> Result<Mo
         other => other.map_err(cannot)?,
     };
     let disk = Disk::new(path, options.out.as_deref(), &options.allow, outputs).map_err(|error| error.to_string())?;
-    Ok(Model { name, text, disk })
+    Ok(Model { name, text: text.into(), disk })
 }
 
 /// What the runs of one model differ in.
@@ -103,12 +104,14 @@ pub fn case(model: &Model, variant: Variant, options: &Options, job: &Arc<Job>, 
     let clock = move || started.elapsed().as_secs_f64();
     let task = Task {
         name: model.name,
-        text: &model.text,
+        text: model.text.as_bytes(),
+        shared: model.text.shared(),
         sets,
         row,
         strict: options.strict,
         keep_going: options.keep_going,
         full: options.json || options.verbose,
+        curves: options.json,
         picture: None,
         clock: &clock,
     };
@@ -159,7 +162,7 @@ fn one(
     let watched = terminal.watched && !options.json && !options.quiet;
     let mut kept = cache.map(|cache| Kept::on(Some(cache.clone())));
     let own = Variant { disk: &model.disk, sets: &options.sets, row: None };
-    let outcome = match with_progress(job, watched, || case(model, own, options, job, kept.as_mut())) {
+    let mut outcome = match with_progress(job, watched, || case(model, own, options, job, kept.as_mut())) {
         Ok(outcome) => outcome,
         Err(caught) => return (bug(&caught, model, terminal), Vec::new()),
     };
@@ -168,6 +171,10 @@ fn one(
         terminal.print(&summary::text(&outcome.report, outcome.tolerance, terminal.color_out));
     } else if options.json && !several {
         terminal.print(&report_text(&outcome.report));
+    }
+    if !several {
+        // The program ends: the system takes the memory back at once.
+        std::mem::forget(std::mem::take(&mut outcome.remains));
     }
     (exit_of(&outcome), vec![Case { case: model.name.to_owned(), set: Vec::new(), report: outcome.report }])
 }

@@ -90,7 +90,8 @@ fn draw(
     interrupt::protect(model.disk.staging());
     let started = Instant::now();
     let clock = move || started.elapsed().as_secs_f64();
-    let task = Task { strict: options.strict, picture: Some(wanted), ..Task::new(model.name, &model.text, &options.sets, &clock) };
+    let task =
+        Task { strict: options.strict, picture: Some(wanted), ..Task::new(model.name, model.text.as_bytes(), &options.sets, &clock) };
     guarded(|| run::run(&task, &model.disk, job))
 }
 

@@ -17,6 +17,6 @@ pub use crate::geometry::curves::enclosure::{Enclosure, enclosure};
 pub use crate::geometry::data::jet::Jet;
 pub use crate::geometry::data::kind::Kind;
 pub use crate::geometry::data::motion::Motion;
-pub use crate::geometry::query::closest::{Closest, closest, closest_pair};
+pub use crate::geometry::query::closest::{Closest, closest, closest_pair, may_come_near};
 pub use crate::geometry::query::intersect::{Hit, intersect, self_intersect};
 pub use crate::geometry::shapes::nurbs::Nurbs;

@@ -43,7 +43,8 @@ impl Network {
 
     /// The network of curves and of those that surfaces stand on.
     pub(super) fn under(curves: &[Curve], surfaces: &[surface::Surface], say: &Speaker, tolerance: &Tolerance) -> Result<Self, Error> {
-        let named: Vec<_> = curves.iter().enumerate().map(|(k, curve)| (name_of(curve, k), &curve.chain)).collect();
+        let names: Vec<String> = curves.iter().enumerate().map(|(k, curve)| name_of(curve, k)).collect();
+        let named: Vec<_> = names.iter().map(String::as_str).zip(curves.iter().map(|curve| &curve.chain)).collect();
         let inputs = inputs(&named, Vec::new(), &surfaces.iter().collect::<Vec<_>>(), &|origin| say.names.of(origin), tolerance);
         let work = STAGE_WORK.saturating_add(WORK_OF_A_CURVE.saturating_mul(inputs.len() as u64));
         let mut said: Vec<Fault> = Vec::new();

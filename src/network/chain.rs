@@ -9,60 +9,18 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::enclosure::{self, ChainEnclosure};
+pub use super::run::Run;
 use super::slice;
 use crate::base::bbox::Box3;
 use crate::base::digest::{StableHash, StableHasher};
 use crate::base::fault::Result;
+use crate::base::few::Few;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::construct::build;
 use crate::geometry::curves::curve::Shape;
 use crate::geometry::{Curve, Jet, Motion};
 use crate::network::fault::MeetingFault;
-
-/// A run along one curve between two arc lengths; backwards when `s1 < s0`.
-///
-/// On a closed curve a run may pass the start: then `s1` exceeds the curve's length (or `s0` does, backwards).
-#[derive(Clone, Debug)]
-pub struct Run {
-    /// The curve it lies on.
-    pub curve: Curve,
-    /// Arc length where the run begins.
-    pub s0: f64,
-    /// Arc length where it ends.
-    pub s1: f64,
-}
-
-crate::content!(Run { curve, s0, s1 });
-
-impl Run {
-    /// Arc length of the run.
-    pub fn length(&self) -> f64 {
-        (self.s1 - self.s0).abs()
-    }
-
-    /// Whether it runs against its curve.
-    pub fn is_backward(&self) -> bool {
-        self.s1 < self.s0
-    }
-
-    /// Point at an arc length between `s0` and `s1`.
-    pub fn point_at(&self, s: f64) -> DVec3 {
-        self.curve.point(self.curve.param_at_length(self.wrapped(s, false)))
-    }
-
-    /// An arc length of the run as one inside 0…length; at the curve's start the one before it or after it.
-    fn wrapped(&self, s: f64, before: bool) -> f64 {
-        let length = self.curve.length();
-        // The end of an ordinary run stays; a run that goes on past the start continues at zero.
-        if s > length || (s == length && !before && self.s0.max(self.s1) > length) { s - length } else { s }
-    }
-
-    /// The run backwards.
-    pub fn reversed(&self) -> Self {
-        Self { curve: self.curve.clone(), s0: self.s1, s1: self.s0 }
-    }
-}
 
 /// A chain of runs: what the language calls a modeling curve, and also any curve value there. Cheap to clone.
 ///
@@ -72,33 +30,53 @@ pub struct Chain(Arc<Inner>);
 
 #[derive(Debug)]
 struct Inner {
-    runs: Vec<Run>,
+    runs: Few<Run, 1>,
+    /// `None` of one whole curve run forwards, as most chains are.
+    table: Option<Box<RunTable>>,
+    length: f64,
+    origin: Origin,
+}
+
+/// What is worked out about the runs beforehand.
+#[derive(Debug)]
+struct RunTable {
     joints: Vec<f64>,
     /// Per run: signed arc length on its curve per unit of fraction.
     rates: Vec<f64>,
     /// Per straight run: first point and derivative by the fraction, so that rows of points cost a multiplication each.
     straight: Vec<Option<(DVec3, DVec3)>>,
-    length: f64,
-    origin: Origin,
 }
-
-crate::content!(Inner { runs, joints, length } but { rates, straight, origin });
 
 impl StableHash for Chain {
     fn hash_into(&self, to: &mut StableHasher) {
-        self.0.hash_into(to);
+        let Inner { runs, table: _, length, origin: _ } = &*self.0;
+        runs.hash_into(to);
+        self.joints().hash_into(to);
+        length.hash_into(to);
     }
 }
 
 impl Chain {
     /// The whole of one curve.
     pub fn of_curve(curve: &Curve) -> Self {
-        Self::of_runs(vec![Run { curve: curve.clone(), s0: 0.0, s1: curve.length() }], curve.origin())
+        Self::of_runs([Run { curve: curve.clone(), s0: 0.0, s1: curve.length() }], curve.origin())
     }
 
     /// Runs in a row; the caller knows that each starts where the one before ends. There must be at least one.
-    pub fn of_runs(runs: Vec<Run>, origin: Origin) -> Self {
+    pub fn of_runs(runs: impl Into<Few<Run, 1>>, origin: Origin) -> Self {
+        let runs = runs.into();
         let length: f64 = runs.iter().map(Run::length).sum();
+        if whole(&runs).is_some() && length > 0.0 {
+            return Self(Arc::new(Inner { runs, table: None, length, origin }));
+        }
+        let straight = |run: &Run| match run.curve.shape() {
+            Shape::Line(a, b) => {
+                let (whole, direction) = (run.curve.length(), *b - *a);
+                let sign = if run.is_backward() { -1.0 } else { 1.0 };
+                Some((*a + direction * (run.s0 / whole), direction * (sign * length / whole)))
+            }
+            _ => None,
+        };
         let mut joints = Vec::with_capacity(runs.len() + 1);
         let mut before = 0.0;
         for run in &runs {
@@ -107,26 +85,13 @@ impl Chain {
         }
         joints.push(1.0);
         let rates = (0..runs.len()).map(|k| (runs[k].s1 - runs[k].s0) / (joints[k + 1] - joints[k])).collect();
-        let straight = runs
-            .iter()
-            .map(|run| match run.curve.shape() {
-                Shape::Line(a, b) => {
-                    let (whole, direction) = (run.curve.length(), *b - *a);
-                    let sign = if run.is_backward() { -1.0 } else { 1.0 };
-                    Some((*a + direction * (run.s0 / whole), direction * (sign * length / whole)))
-                }
-                _ => None,
-            })
-            .collect();
-        Self(Arc::new(Inner { runs, joints, rates, straight, length, origin }))
+        let table = RunTable { joints, rates, straight: runs.iter().map(straight).collect() };
+        Self(Arc::new(Inner { runs, table: Some(Box::new(table)), length, origin }))
     }
 
     /// The curve when this is one whole curve run forwards.
     pub fn whole_curve(&self) -> Option<&Curve> {
-        match self.0.runs.as_slice() {
-            [run] if run.s0 == 0.0 && run.s1 == run.curve.length() => Some(&run.curve),
-            _ => None,
-        }
+        whole(&self.0.runs)
     }
 
     /// The runs in order.
@@ -136,7 +101,21 @@ impl Chain {
 
     /// Fractions of the joints between runs, 0 and 1 included.
     pub fn joints(&self) -> &[f64] {
-        &self.0.joints
+        self.0.table.as_ref().map_or(&[0.0, 1.0], |table| &table.joints)
+    }
+
+    /// First point and derivative by the fraction of a straight run.
+    #[inline]
+    fn straight(&self, k: usize) -> Option<(DVec3, DVec3)> {
+        match (&self.0.table, self.0.runs[k].curve.shape()) {
+            (Some(table), _) => table.straight[k],
+            (None, Shape::Line(a, b)) => Some((*a, *b - *a)),
+            (None, _) => None,
+        }
+    }
+
+    fn rate(&self, k: usize) -> f64 {
+        self.0.table.as_ref().map_or(self.0.length, |table| table.rates[k])
     }
 
     /// Arc length, model units.
@@ -168,7 +147,7 @@ impl Chain {
 
     /// The run that holds a fraction; at a joint the run that follows, or the one before.
     fn run_at(&self, f: f64, before: bool) -> usize {
-        let inner = &self.0.joints[1..self.0.runs.len()];
+        let inner = &self.joints()[1..self.0.runs.len()];
         if inner.is_empty() {
             0
         } else if before {
@@ -181,12 +160,12 @@ impl Chain {
     /// Arc length on the curve of run `k` at a fraction, exact at the ends of the run.
     fn station(&self, k: usize, f: f64) -> f64 {
         let run = &self.0.runs[k];
-        if f >= self.0.joints[k + 1] {
+        if f >= self.joints()[k + 1] {
             run.s1
-        } else if f <= self.0.joints[k] {
+        } else if f <= self.joints()[k] {
             run.s0
         } else {
-            run.s0 + self.0.rates[k] * (f - self.0.joints[k])
+            run.s0 + self.rate(k) * (f - self.joints()[k])
         }
     }
 
@@ -198,13 +177,13 @@ impl Chain {
 
     /// Fraction of an arc length between the ends of run `k`.
     pub fn fraction(&self, k: usize, s: f64) -> f64 {
-        let (run, joints) = (&self.0.runs[k], &self.0.joints);
+        let (run, joints) = (&self.0.runs[k], self.joints());
         if s == run.s1 {
             joints[k + 1]
         } else if s == run.s0 {
             joints[k]
         } else {
-            (joints[k] + (s - run.s0) / self.0.rates[k]).clamp(joints[k], joints[k + 1])
+            (joints[k] + (s - run.s0) / self.rate(k)).clamp(joints[k], joints[k + 1])
         }
     }
 
@@ -219,8 +198,8 @@ impl Chain {
     }
 
     fn jet_of_run(&self, k: usize, f: f64, before: bool) -> Jet {
-        if let Some((p, d1)) = self.0.straight[k] {
-            return Jet { p: p + d1 * (f - self.0.joints[k]), d1, d2: DVec3::ZERO };
+        if let Some((p, d1)) = self.straight(k) {
+            return Jet { p: p + d1 * (f - self.joints()[k]), d1, d2: DVec3::ZERO };
         }
         let run = &self.0.runs[k];
         // What lies before a place of the chain lies after it on a curve run backwards.
@@ -238,8 +217,8 @@ impl Chain {
     }
 
     fn point_of_run(&self, k: usize, f: f64) -> DVec3 {
-        if let Some((p, d1)) = self.0.straight[k] {
-            return p + d1 * (f.clamp(0.0, 1.0) - self.0.joints[k]);
+        if let Some((p, d1)) = self.straight(k) {
+            return p + d1 * (f.clamp(0.0, 1.0) - self.joints()[k]);
         }
         self.0.runs[k].point_at(self.station(k, f))
     }
@@ -248,7 +227,7 @@ impl Chain {
     pub fn points(&self, fs: &[f64], out: &mut [DVec3]) {
         let (mut k, last) = (0, self.0.runs.len() - 1);
         for (&f, p) in fs.iter().zip(out) {
-            while k < last && f >= self.0.joints[k + 1] {
+            while k < last && f >= self.joints()[k + 1] {
                 k += 1;
             }
             *p = self.point_of_run(k, f);
@@ -259,7 +238,7 @@ impl Chain {
     pub fn jets(&self, fs: &[f64], out: &mut [Jet]) {
         let (mut k, last) = (0, self.0.runs.len() - 1);
         for (&f, jet) in fs.iter().zip(out) {
-            while k < last && f >= self.0.joints[k + 1] {
+            while k < last && f >= self.joints()[k + 1] {
                 k += 1;
             }
             *jet = self.jet_of_run(k, f, f >= 1.0);
@@ -285,7 +264,7 @@ impl Chain {
 
     /// The run backwards.
     pub fn reversed(&self) -> Self {
-        Self::of_runs(self.0.runs.iter().rev().map(Run::reversed).collect(), self.0.origin)
+        Self::of_runs(self.0.runs.iter().rev().map(Run::reversed).collect::<Vec<_>>(), self.0.origin)
     }
 
     /// The run between two fractions; `f1 < f0` runs backwards, on a closed chain it walks forward past the start
@@ -357,6 +336,14 @@ impl Chain {
             return Ok(f);
         }
         Err(MeetingFault::PointOff { of: self.0.origin, point: p, nearest, tolerance: tolerance.point }.into())
+    }
+}
+
+/// The curve that one run runs over as a whole, forwards.
+fn whole(runs: &[Run]) -> Option<&Curve> {
+    match runs {
+        [run] if run.s0 == 0.0 && run.s1 == run.curve.length() => Some(&run.curve),
+        _ => None,
     }
 }
 

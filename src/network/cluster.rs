@@ -2,7 +2,7 @@
 //!
 //! Sorting instead of pointers: a group is sorted along an axis and cut where neighbours are further apart than the
 //! tolerance, axis after axis, until no cut is left; only then are distances taken. Points that share a coordinate
-//! (grids, plane models) cost no more than others.
+//! (grids, plane models) cost no more than others. Points of one place, as ends that meet have it, are one beforehand.
 
 use glam::DVec3;
 
@@ -13,8 +13,10 @@ const SMALL: usize = 6;
 
 /// For each point the least index of its group; points at most `reach` apart are in one group.
 pub fn cluster(points: &[DVec3], reach: f64) -> Vec<u32> {
-    let mut sets = Sets::new(points.len());
-    let mut order: Vec<u32> = (0..points.len() as u32).collect();
+    let first = first_of_place(points);
+    let mut order: Vec<u32> = first.iter().zip(0..).filter(|(first, k)| *first == k).map(|(_, k)| k).collect();
+    let mut sets = Sets { parent: first };
+    let mut keyed: Vec<(i64, u32)> = Vec::new();
     // Ranges of `order`, the axis to sort them by, and how many axes in a row did not cut them.
     let mut stack = vec![(0, order.len(), 0, 0)];
     while let Some((from, to, axis, uncut)) = stack.pop() {
@@ -29,7 +31,11 @@ pub fn cluster(points: &[DVec3], reach: f64) -> Vec<u32> {
             continue;
         }
         let at = |k: u32| points[k as usize][axis];
-        group.sort_unstable_by(|&a, &b| at(a).total_cmp(&at(b)));
+        // Beside their coordinates the indices are sorted without looking far.
+        keyed.clear();
+        keyed.extend(group.iter().map(|&k| (in_total_order(at(k)), k)));
+        keyed.sort_unstable();
+        group.iter_mut().zip(&keyed).for_each(|(k, (_, sorted))| *k = *sorted);
         let mut start = 0;
         for k in 1..=group.len() {
             if k == group.len() || at(group[k]) - at(group[k - 1]) > reach {
@@ -42,6 +48,38 @@ pub fn cluster(points: &[DVec3], reach: f64) -> Vec<u32> {
         }
     }
     sets.roots()
+}
+
+/// A whole number for each real, in the order of [`f64::total_cmp`].
+fn in_total_order(x: f64) -> i64 {
+    let bits = x.to_bits() as i64;
+    bits ^ (((bits >> 63) as u64) >> 1) as i64
+}
+
+/// For each point the index of the first one with the same finite coordinates.
+fn first_of_place(points: &[DVec3]) -> Vec<u32> {
+    const FREE: u32 = u32::MAX;
+    let mask = (2 * points.len()).next_power_of_two() - 1;
+    let mut slots = vec![FREE; mask + 1];
+    let mut first: Vec<u32> = (0..points.len() as u32).collect();
+    for (k, p) in points.iter().enumerate().filter(|(_, p)| p.is_finite()) {
+        let mut slot = hash(*p) & mask;
+        while slots[slot] != FREE && points[slots[slot] as usize] != *p {
+            slot = (slot + 1) & mask;
+        }
+        if slots[slot] == FREE {
+            slots[slot] = k as u32;
+        }
+        first[k] = slots[slot];
+    }
+    first
+}
+
+/// Multiplied and rotated, mixed at the end; equal for the two zeros.
+fn hash(p: DVec3) -> usize {
+    const K: u64 = 0x9e37_79b9_7f4a_7c15;
+    let h = (p + DVec3::ZERO).to_array().into_iter().fold(0, |h: u64, x| (h.rotate_left(23) ^ x.to_bits()).wrapping_mul(K));
+    (h ^ (h >> 29)).wrapping_mul(K) as usize >> 20
 }
 
 fn join_close(points: &[DVec3], group: &[u32], reach: f64, sets: &mut Sets) {

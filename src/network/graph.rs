@@ -12,6 +12,7 @@ use super::chain::{Chain, Run, same_curve};
 use super::hits::{self, Contact};
 use super::near::near_misses;
 use crate::base::fault::{Fault, Result};
+use crate::base::few::Few;
 use crate::base::job::Job;
 use crate::base::math::compare_points;
 use crate::base::origin::Origin;
@@ -34,7 +35,7 @@ pub struct Node {
     /// Where it is: the declared point among the hits, else their mean.
     pub point: DVec3,
     /// Links that end here, with `true` where the link ends and `false` where it starts; ascending.
-    pub ends: Vec<(LinkId, bool)>,
+    pub ends: Few<(LinkId, bool), 2>,
 }
 
 /// A run of one curve between neighbouring nodes.
@@ -58,12 +59,12 @@ pub struct NetCurve {
     /// Arc lengths where a node was asked for.
     pub cuts: Vec<f64>,
     /// Links it runs over from start to end, with `true` where it runs against the link's direction (shared runs).
-    pub links: Vec<(LinkId, bool)>,
+    pub links: Few<(LinkId, bool), 1>,
     /// Its nodes from start to end, `links.len() + 1` of them; those of a closed curve begin and end with its first
     /// node, which is at its start only when nothing meets it or something meets it there.
-    pub nodes: Vec<NodeId>,
+    pub nodes: Few<NodeId, 2>,
     /// Arc lengths of these nodes on this curve, ascending; the last one of a closed curve is one turn after the first.
-    pub stations: Vec<f64>,
+    pub stations: Few<f64, 2>,
 }
 
 /// A curve to insert.
@@ -114,6 +115,7 @@ impl Network {
         sink: &mut Vec<Fault>,
     ) -> Result<Self> {
         let mut network = Self { points: points.to_vec(), ..Self::default() };
+        network.curves.reserve_exact(inputs.len());
         for input in inputs {
             network.admit(input, tolerance)?;
         }
@@ -171,7 +173,7 @@ impl Network {
         if length.is_nan() || length <= tolerance.point {
             return Err(ChainFault::NoLength { of: curve.origin(), at: curve.start(), length, tolerance: tolerance.point }.into());
         }
-        self.curves.push(NetCurve { name, curve, cuts, links: Vec::new(), nodes: Vec::new(), stations: Vec::new() });
+        self.curves.push(NetCurve { name, curve, cuts, links: Few::default(), nodes: Few::default(), stations: Few::default() });
         Ok(())
     }
 
@@ -250,7 +252,7 @@ impl Network {
     pub fn link_chain(&self, link: LinkId) -> Chain {
         let Link { curve, s, .. } = self.links[link.index()];
         let curve = &self.curves[curve.index()].curve;
-        Chain::of_runs(vec![Run { curve: curve.clone(), s0: s.0, s1: s.1 }], curve.origin())
+        Chain::of_runs([Run { curve: curve.clone(), s0: s.0, s1: s.1 }], curve.origin())
     }
 }
 

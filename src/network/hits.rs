@@ -18,7 +18,7 @@ use crate::geometry::intersect;
 use crate::geometry::{Curve, Hit, self_intersect};
 
 /// One contact of two curves, or of a curve with itself.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Contact {
     /// The curves, as indices; the first by name first.
     pub curves: [u32; 2],
@@ -27,11 +27,16 @@ pub struct Contact {
     /// Where.
     pub at: DVec3,
     /// The other end of an overlap: arc lengths (the second one may be less than its start) and point.
-    pub to: Option<([f64; 2], DVec3)>,
+    pub to: Option<Box<([f64; 2], DVec3)>>,
 }
 
 /// Work of two curves whose boxes touch, before they are looked at: at least so much is done with them.
 const OF_A_PAIR: u64 = 32;
+/// Tolerances that the far end of the shorter of two straight curves with a common end is off the other one where they meet nowhere else:
+/// four times the distance within which the search looks for ends.
+const CLEAR: f64 = 256.0;
+/// Pairs of one curve from which on its pieces are kept from one to the next.
+const MANY_PAIRS: u32 = 8;
 /// Pairs handed to a thread at once.
 const CHUNK: usize = 256;
 
@@ -70,7 +75,7 @@ pub fn all_after(curves: &[NetCurve], before: (&[NetCurve], &[Contact]), toleran
             let own = known[from..].iter().take_while(|c| unordered(c.curves) == key);
             // The first by name is the same one as before.
             let now = |k: u32| if k == a { pair.0 } else { pair.1 };
-            all.extend(own.map(|c| Contact { curves: c.curves.map(now), ..**c }));
+            all.extend(own.map(|c| Contact { curves: c.curves.map(now), ..(**c).clone() }));
         } else {
             while let Some(contact) = found.next_if(|c| unordered(c.curves) == unordered([pair.0, pair.1])) {
                 all.push(contact);
@@ -95,6 +100,7 @@ fn may_meet_itself(curve: &Curve) -> bool {
 
 fn of_pairs(curves: &[NetCurve], pairs: &[(u32, u32)], tolerance: &Tolerance, job: &Job) -> Result<Vec<Contact>> {
     job.expect(pairs.len() as u64);
+    keep_pieces(curves, pairs);
     let chunks = par::try_map(pairs.len().div_ceil(CHUNK), |k| {
         job.go_on()?;
         let chunk = &pairs[k * CHUNK..((k + 1) * CHUNK).min(pairs.len())];
@@ -102,7 +108,7 @@ fn of_pairs(curves: &[NetCurve], pairs: &[(u32, u32)], tolerance: &Tolerance, jo
         for &(a, b) in chunk {
             let (a, b) = if curves[a as usize].name <= curves[b as usize].name { (a, b) } else { (b, a) };
             let (first, second) = (&curves[a as usize].curve, &curves[b as usize].curve);
-            if let Some((s, at)) = corner(first, second) {
+            if let Some((s, at)) = corner(first, second, tolerance) {
                 contacts.push(Contact { curves: [a, b], s, at, to: None });
                 continue;
             }
@@ -113,6 +119,17 @@ fn of_pairs(curves: &[NetCurve], pairs: &[(u32, u32)], tolerance: &Tolerance, jo
         Result::Ok(contacts)
     })?;
     Ok(chunks.into_iter().flatten().collect())
+}
+
+/// Has the pieces of curves that are in many pairs made once.
+fn keep_pieces(curves: &[NetCurve], pairs: &[(u32, u32)]) {
+    let mut of_each = vec![0_u32; curves.len()];
+    for curve in pairs.iter().flat_map(|(a, b)| [*a, *b]) {
+        of_each[curve as usize] += 1;
+        if of_each[curve as usize] == MANY_PAIRS {
+            curves[curve as usize].curve.pieces();
+        }
+    }
 }
 
 /// Place of each curve in the order of names.
@@ -126,13 +143,17 @@ pub fn ranks(curves: &[NetCurve]) -> Vec<u32> {
     rank
 }
 
-/// Two straight curves with a common end that part at a right angle or more: they can meet nowhere else.
-fn corner(a: &Curve, b: &Curve) -> Option<([f64; 2], DVec3)> {
+/// Two straight curves with a common end that part at a right angle or more, or far enough: they can meet nowhere else.
+fn corner(a: &Curve, b: &Curve, tolerance: &Tolerance) -> Option<([f64; 2], DVec3)> {
     let (&Shape::Line(a0, a1), &Shape::Line(b0, b1)) = (a.shape(), b.shape()) else { return None };
     let ends = [(a0, a1, b0, b1), (a0, a1, b1, b0), (a1, a0, b0, b1), (a1, a0, b1, b0)];
     let (p, far_a, _, far_b) = ends.into_iter().find(|(p, _, q, _)| p == q)?;
     let s = |curve: &Curve, start: DVec3| if start == p { 0.0 } else { curve.length() };
-    ((far_a - p).dot(far_b - p) <= 0.0).then(|| ([s(a, a0), s(b, b0)], p))
+    let (u, v) = (far_a - p, far_b - p);
+    // The far end of the shorter one is |u × v| / max(|u|, |v|) off the line of the other.
+    let clear = CLEAR * tolerance.point;
+    let apart = || u.cross(v).length_squared() > clear * clear * u.length_squared().max(v.length_squared());
+    (u.dot(v) <= 0.0 || apart()).then(|| ([s(a, a0), s(b, b0)], p))
 }
 
 fn contact(curves: [u32; 2], [a, b]: [&Curve; 2], hit: Hit) -> Contact {
@@ -142,7 +163,7 @@ fn contact(curves: [u32; 2], [a, b]: [&Curve; 2], hit: Hit) -> Contact {
             curves,
             s: [a.length_at(ta0), b.length_at(tb0)],
             at: (a.point(ta0) + b.point(tb0)) * 0.5,
-            to: Some(([a.length_at(ta1), b.length_at(tb1)], (a.point(ta1) + b.point(tb1)) * 0.5)),
+            to: Some(Box::new(([a.length_at(ta1), b.length_at(tb1)], (a.point(ta1) + b.point(tb1)) * 0.5))),
         },
     }
 }

@@ -14,7 +14,7 @@ use crate::base::boxtree::BoxTree;
 use crate::base::fault::Fault;
 use crate::base::par;
 use crate::base::tolerance::{NEAR_MISS, Tolerance};
-use crate::geometry::closest;
+use crate::geometry::{closest, may_come_near};
 use crate::network::fault::{CurveEnd, EndFault};
 
 /// A curve as long as the model is cut into about this many pieces.
@@ -128,7 +128,7 @@ fn ends(curves: &[NetCurve], one: Option<usize>, tolerance: &Tolerance) -> Vec<(
 /// How often curves come to each node.
 fn meets(curves: &[NetCurve]) -> Vec<u32> {
     let mut meets: Vec<u32> = Vec::new();
-    for node in curves.iter().flat_map(|net| &net.nodes) {
+    for node in curves.iter().flat_map(|net| net.nodes.iter()) {
         if node.index() >= meets.len() {
             meets.resize(node.index() + 1, 0);
         }
@@ -148,6 +148,9 @@ fn miss(curves: &[NetCurve], end: End, other: usize, one: Option<usize>, toleran
     let length = net.curve.length();
     let stub = |s: f64| if last { length - s <= 2.0 * reach } else { s <= 2.0 * reach };
     if net.nodes.iter().zip(&net.stations).any(|(node, &s)| stub(s) && target.nodes.contains(node)) {
+        return None;
+    }
+    if !may_come_near(&target.curve, at, reach) {
         return None;
     }
     let nearest = closest(&target.curve, at);

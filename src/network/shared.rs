@@ -24,6 +24,11 @@ pub struct Shared {
 }
 
 impl Shared {
+    /// Whether nothing is shared.
+    pub fn is_empty(&self) -> bool {
+        self.first.is_empty()
+    }
+
     /// Curve and place of the segment that owns segment `i` of curve `k`; itself when it is not shared.
     pub fn owner(&self, k: usize, i: usize) -> (usize, usize) {
         self.first.get(k).map_or((k, i), |first| {
@@ -51,7 +56,8 @@ pub fn match_segments(curves: &[NetCurve], parts: &Parts, stations: &mut Station
     }
     let mut first = Vec::with_capacity(curves.len());
     let mut all: Vec<(u32, u32)> = Vec::new();
-    for (k, row) in stations.rows.iter().enumerate() {
+    for k in 0..stations.rows.len() {
+        let row = stations.rows.row(k);
         first.push(all.len());
         let n = if stations.closed[k] { row.len() } else { row.len() - 1 };
         all.extend((0..n as u32).map(|i| (k as u32, i)));
@@ -77,14 +83,14 @@ pub fn match_segments(curves: &[NetCurve], parts: &Parts, stations: &mut Station
 }
 
 fn note(curves: &[NetCurve], overlap: &Contact) -> Option<Fault> {
-    let (s, to) = overlap.to?;
+    let (s, to) = *overlap.to.as_deref()?;
     let [owner, other] = overlap.curves.map(|k| curves[k as usize].curve.origin());
     Some(GraphFault::SharedRun { owner, other, run: (overlap.at, to), length: (s[0] - overlap.s[0]).abs() }.into())
 }
 
 /// Arc lengths of one side's overlap, ascending.
 fn span(overlap: &Contact, side: usize) -> (f64, f64) {
-    let end = overlap.to.map_or(overlap.s[side], |(s, _)| s[side]);
+    let end = overlap.to.as_deref().map_or(overlap.s[side], |(s, _)| s[side]);
     (overlap.s[side].min(end), overlap.s[side].max(end))
 }
 
@@ -93,10 +99,12 @@ fn copy_nodes(curves: &[NetCurve], overlap: &Contact, from: usize, stations: &mu
     let (a, b) = (overlap.curves[from] as usize, overlap.curves[1 - from] as usize);
     let ((a0, a1), (b0, b1)) = (span(overlap, from), span(overlap, 1 - from));
     let reach = 4.0 * tolerance.point;
-    let missing: Vec<u32> = stations.rows[a]
+    let missing: Vec<u32> = stations
+        .rows
+        .row(a)
         .iter()
         .filter(|st| st.s > a0 && st.s < a1)
-        .filter(|st| !stations.rows[b].iter().any(|other| other.node == st.node && other.s >= b0 - reach && other.s <= b1 + reach))
+        .filter(|st| !stations.rows.row(b).iter().any(|other| other.node == st.node && other.s >= b0 - reach && other.s <= b1 + reach))
         .map(|st| st.node)
         .collect();
     if missing.is_empty() {
@@ -104,12 +112,13 @@ fn copy_nodes(curves: &[NetCurve], overlap: &Contact, from: usize, stations: &mu
     }
     let curve = &curves[b].curve;
     let part = curve.part(curve.param_at_length(b0), curve.param_at_length(b1));
-    let mut row = stations.rows[b].clone();
+    let mut row = stations.rows.row(b).to_vec();
     for node in missing {
         let near = closest(&part, stations.points[node as usize]);
         row.push(Station { s: b0 + part.length_at(near.t), node });
     }
-    stations.rows[b] = settle(&curves[b], row, stations, stations.closed[b], tolerance);
+    settle(curve, curve.length(), &mut row, &stations.points, stations.closed[b], tolerance);
+    stations.rows.set(b, row);
     true
 }
 
@@ -117,7 +126,7 @@ fn copy_nodes(curves: &[NetCurve], overlap: &Contact, from: usize, stations: &mu
 fn pairs(curves: &[NetCurve], overlap: &Contact, stations: &Stations, tolerance: &Tolerance) -> Vec<(usize, usize)> {
     let inside = |side: usize| -> Vec<(usize, (u32, u32))> {
         let k = overlap.curves[side] as usize;
-        let (row, length) = (&stations.rows[k], curves[k].curve.length());
+        let (row, length) = (stations.rows.row(k), curves[k].curve.length());
         let (lo, hi) = span(overlap, side);
         let reach = 4.0 * tolerance.point;
         let n = if stations.closed[k] { row.len() } else { row.len() - 1 };
@@ -131,7 +140,7 @@ fn pairs(curves: &[NetCurve], overlap: &Contact, stations: &Stations, tolerance:
             .map(|i| (i, (row[i].node, row[(i + 1) % row.len()].node)))
             .collect()
     };
-    let ([first, second], reversed) = ([inside(0), inside(1)], overlap.to.is_some_and(|(s, _)| s[1] < overlap.s[1]));
+    let ([first, second], reversed) = ([inside(0), inside(1)], overlap.to.as_deref().is_some_and(|(s, _)| s[1] < overlap.s[1]));
     let mut found = Vec::new();
     for &(i, ends) in &first {
         let wanted = if reversed { (ends.1, ends.0) } else { ends };

@@ -21,12 +21,12 @@ const PLACES: [(f64, f64); 3] = [(0.5, 0.5), (0.0, 0.0), (1.0, 1.0)];
 
 /// Puts curves in order.
 pub fn sort_curves(inputs: &mut Vec<Input>, tolerance: &Tolerance) {
-    sort_by(inputs, |input| of_curve(&input.curve, tolerance).to_vec(), |input| &input.name);
+    sort_by(inputs, |input| of_curve(&input.curve, tolerance), |input| &input.name);
 }
 
 /// Puts curves with names in order.
 pub fn sort_named(curves: &mut Vec<(Curve, String)>, tolerance: &Tolerance) {
-    sort_by(curves, |named| of_curve(&named.0, tolerance).to_vec(), |named| &named.1);
+    sort_by(curves, |named| of_curve(&named.0, tolerance), |named| &named.1);
 }
 
 /// Puts surfaces in order.
@@ -34,10 +34,13 @@ pub fn sort_surfaces(surfaces: &mut Vec<Named>, tolerance: &Tolerance) {
     sort_by(surfaces, |named| of_surface(&named.surface, tolerance), |named| &named.name);
 }
 
-fn sort_by<T>(items: &mut Vec<T>, place: impl Fn(&T) -> Vec<DVec3>, name: impl Fn(&T) -> &str) {
-    let mut keyed: Vec<(Vec<DVec3>, T)> = std::mem::take(items).into_iter().map(|item| (place(&item), item)).collect();
-    keyed.sort_by(|(a, x), (b, y)| compare(a, b).then_with(|| name(x).cmp(name(y))));
-    items.extend(keyed.into_iter().map(|(_, item)| item));
+fn sort_by<T, P: AsRef<[DVec3]>>(items: &mut Vec<T>, place: impl Fn(&T) -> P, name: impl Fn(&T) -> &str) {
+    let places: Vec<P> = items.iter().map(place).collect();
+    let mut order: Vec<usize> = (0..items.len()).collect();
+    order.sort_by(|&a, &b| compare(places[a].as_ref(), places[b].as_ref()).then_with(|| name(&items[a]).cmp(name(&items[b]))));
+    drop(places);
+    let mut items_left: Vec<Option<T>> = std::mem::take(items).into_iter().map(Some).collect();
+    items.extend(order.into_iter().filter_map(|k| items_left[k].take()));
 }
 
 fn compare(a: &[DVec3], b: &[DVec3]) -> Ordering {

@@ -12,6 +12,7 @@ use crate::lang::eval::pipeline::Parts;
 use crate::lang::run::unmade::{Unmade, Why};
 use crate::lang::values::plans::{CheckResult, ReportTable};
 use crate::lang::values::value::{ModuleId, Quantity, ShellValue, Value};
+use crate::lang::words::names::Names;
 use crate::mesh::Mesh;
 use crate::mesh::cache::reuse::Reuse;
 use crate::model::topology::Named;
@@ -40,8 +41,14 @@ pub fn surfaces_in_order(parts: &Parts, model: &Model) -> Vec<usize> {
 }
 
 fn in_order<'n>(declared: impl Iterator<Item = &'n str>, all: impl Iterator<Item = &'n str>) -> Vec<usize> {
-    let rank: BTreeMap<&str, usize> = declared.enumerate().map(|(n, name)| (name, n)).collect();
-    let mut found: Vec<(usize, usize)> = all.map(|name| rank.get(name).copied().unwrap_or(usize::MAX)).zip(0..).collect();
+    let (mut names, mut rank) = (Names::default(), Vec::new());
+    for (n, name) in declared.enumerate() {
+        let name = names.intern(name).index();
+        rank.resize(rank.len().max(name + 1), n);
+        rank[name] = n;
+    }
+    let rank_of = |name: &str| names.find(name).map_or(usize::MAX, |name| rank[name.index()]);
+    let mut found: Vec<(usize, usize)> = all.map(rank_of).zip(0..).collect();
     found.sort_unstable();
     found.into_iter().map(|(_, place)| place).collect()
 }
@@ -74,7 +81,8 @@ pub fn chains<'p>(cx: &Cx, parts: &'p Parts, network: &Network, tolerance: &Tole
     let mut places = BTreeMap::new();
     let mut rows: Vec<(String, usize, &'p Chain)> = Vec::new();
     let declared = parts.modeling.len();
-    let curves: BTreeSet<&str> = parts.curves.iter().map(|c| &*c.name).collect();
+    // Asked of chains that surfaces stand on.
+    let curves: BTreeSet<&str> = parts.curves.iter().filter(|_| !parts.surfaces.is_empty()).map(|c| &*c.name).collect();
     let rank = |name: &str| (!curves.contains(name), name.to_owned());
     let named = parts.modeling.iter().map(|m| (m.name.to_string(), &m.value));
     let below = parts.surfaces.iter().flat_map(|s| s.value.chains()).map(|chain| (cx.name(chain.origin()), chain));

@@ -210,12 +210,15 @@ pub fn read_limited(path: &Path, limit: u64) -> Result<Vec<u8>, FileError> {
     if about.len() > limit {
         return Err(FileError::TooLarge(about.len()));
     }
-    read_stream(File::open(path).map_err(failed)?, limit)
+    fill(Vec::with_capacity(about.len() as usize), File::open(path).map_err(failed)?, limit)
 }
 
 /// All bytes of a stream, at most `limit` of them.
 pub fn read_stream(stream: impl Read, limit: u64) -> Result<Vec<u8>, FileError> {
-    let mut bytes = Vec::new();
+    fill(Vec::new(), stream, limit)
+}
+
+fn fill(mut bytes: Vec<u8>, stream: impl Read, limit: u64) -> Result<Vec<u8>, FileError> {
     stream.take(limit + 1).read_to_end(&mut bytes).map_err(|error| FileError::Other(plain(&error)))?;
     if bytes.len() as u64 > limit { Err(FileError::TooLarge(bytes.len() as u64)) } else { Ok(bytes) }
 }

@@ -37,15 +37,15 @@ impl Shapes {
 /// with cuts where runs of modeling curves end. Other `let` curves are construction geometry and stay out. `name` is the text that a
 /// curve was made by.
 pub fn inputs(
-    curves: &[(String, &Chain)],
+    curves: &[(&str, &Chain)],
     modeling: Vec<&Chain>,
     surfaces: &[&Surface],
     name: &dyn Fn(Origin) -> String,
     tolerance: &Tolerance,
 ) -> Vec<Input> {
-    let whole = |(name, chain): &(String, &Chain)| {
+    let whole = |(name, chain): &(&str, &Chain)| {
         let curve = chain.whole_curve().cloned().or_else(|| chain.runs().first().map(|run| run.curve.clone()))?;
-        Some(Input { name: name.clone(), curve, cuts: Vec::new() })
+        Some(Input { name: (*name).to_owned(), curve, cuts: Vec::new() })
     };
     let mut inputs: Vec<Input> = curves.iter().filter_map(whole).collect();
     canonical::sort_curves(&mut inputs, tolerance);

@@ -29,7 +29,9 @@ pub fn run(task: &Task, disk: &dyn Store, job: &Job) -> Outcome {
 /// Runs it and shows `look` the evaluated model before it goes.
 pub fn run_seen(task: &Task, disk: &dyn Store, job: &Job, look: &mut dyn FnMut(&mut Cx<'_>)) -> Outcome {
     let stages = Stages::new(task.clock);
-    Run::new(task, Cx::new(disk, &stages, job), disk, &stages).whole(look).0
+    let (mut outcome, memory) = Run::new(task, Cx::new(disk, &stages, job), disk, &stages).whole(look);
+    outcome.remains.memory = Some(Box::new(memory));
+    outcome
 }
 
 /// How a run goes that follows another one.
@@ -134,16 +136,18 @@ impl<'r> Run<'r> {
         let clock = self.task.clock;
         let start = clock();
         let name = if self.task.name == "-" { "<stdin>" } else { self.task.name };
-        let text = match self.task.picture.map_or(Ok(text.to_owned()), |wanted| picture_paths::with_paths(text, wanted)) {
-            Ok(text) => text,
+        let shared = self.task.shared.clone();
+        let own = || shared.unwrap_or_else(|| text.into());
+        let text: Arc<str> = match self.task.picture.map(|wanted| picture_paths::with_paths(text, wanted)).transpose() {
+            Ok(Some(longer)) => longer.into(),
+            Ok(None) => own(),
             Err(said) => {
                 self.said = Some(*said);
-                text.to_owned()
+                own()
             }
         };
-        let text = text.as_str();
         let phase = self.cx.job.phase("reading");
-        self.cx.load(&Entry { name, path: &self.disk.script_name(self.task.name), text, sets: self.task.sets, row: self.task.row });
+        self.cx.load(Entry { name, path: &self.disk.script_name(self.task.name), text, sets: self.task.sets, row: self.task.row });
         self.report.units = self.cx.unit().name.to_owned();
         let parsed = clock();
         drop(phase);
@@ -228,6 +232,7 @@ impl<'r> Run<'r> {
         timings.mesh = self.stages.mesh_seconds();
         timings.evaluate = (timings.evaluate - timings.mesh).max(0.0);
         let sources = std::mem::take(&mut self.cx.program.sources);
+        let (memory, remains) = self.cx.into_memory();
         let outcome = Outcome {
             report: self.report,
             meshes: self.meshes,
@@ -241,8 +246,9 @@ impl<'r> Run<'r> {
             reused: 0,
             reused_faces: 0,
             from_cache: 0,
+            remains,
         };
-        (outcome, self.cx.into_memory())
+        (outcome, memory)
     }
 }
 

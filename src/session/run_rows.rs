@@ -36,7 +36,9 @@ impl Run<'_> {
     fn geometry(&mut self, sound: &Sound, tolerance: &Tolerance) -> Box3 {
         let Sound { parts, network, model, .. } = sound;
         self.report.network = collect::network_counts(network);
-        self.report.curves = collect::curves(parts, network);
+        if self.task.curves {
+            self.report.curves = collect::curves(parts, network);
+        }
         self.report.modeling = collect::modeling(&self.cx, parts, network, tolerance);
         let (rows, light) = (&mut self.rows, self.light);
         rows.allow_surfaces(model.surfaces.iter().map(|named| &named.surface));

@@ -114,7 +114,7 @@ impl Stages<'_> {
 impl Pipeline for Stages<'_> {
     fn network(&self, cx: &mut Cx, module: ModuleId, parts: &Parts) -> Result<Arc<Network>, Halt> {
         let tolerance = cx.tolerance()?;
-        let curves: Vec<(String, &Chain)> = parts.curves.iter().map(|c| (c.name.to_string(), &c.value)).collect();
+        let curves: Vec<(&str, &Chain)> = parts.curves.iter().map(|c| (&*c.name, &c.value)).collect();
         let modeling = parts.modeling.iter().map(|m| &m.value).collect();
         let surfaces: Vec<_> = parts.surfaces.iter().map(|s| &s.value).collect();
         let inputs = inputs(&curves, modeling, &surfaces, &|origin| cx.name(origin), &tolerance);

@@ -8,6 +8,7 @@ use crate::base::job::TooMuchWork;
 use crate::lang::declare::params::TableRow;
 use crate::lang::diag::diagnostic::{Diagnostic, Sources};
 use crate::lang::diag::render::render_all;
+use crate::lang::incremental::recall::Remains;
 use crate::lang::values::plans::PictureSpec;
 use crate::mesh::Mesh;
 
@@ -17,6 +18,8 @@ pub struct Task<'a> {
     pub name: &'a str,
     /// Its bytes.
     pub text: &'a [u8],
+    /// The same, where they are text that the run may share instead of copying it.
+    pub shared: Option<Arc<str>>,
     /// Params set from outside: name and the text of a literal.
     pub sets: &'a [(String, String)],
     /// The row of a table of variants that sets some of them.
@@ -27,6 +30,8 @@ pub struct Task<'a> {
     pub keep_going: bool,
     /// Every number of the JSON report; without it the costly ones of meshes over 200 000 elements are left out.
     pub full: bool,
+    /// A row for each curve in the report, which the summary on a terminal has not.
+    pub curves: bool,
     /// One picture is all that is written, whatever the script exports, and also of a model that has errors.
     pub picture: Option<&'a Wanted>,
     /// Seconds since some moment.
@@ -36,7 +41,52 @@ pub struct Task<'a> {
 impl<'a> Task<'a> {
     /// A run without options.
     pub fn new(name: &'a str, text: &'a [u8], sets: &'a [(String, String)], clock: &'a (dyn Fn() -> f64 + Sync)) -> Self {
-        Self { name, text, sets, row: None, strict: false, keep_going: false, full: false, picture: None, clock }
+        Self {
+            name,
+            text,
+            shared: None,
+            sets,
+            row: None,
+            strict: false,
+            keep_going: false,
+            full: false,
+            curves: true,
+            picture: None,
+            clock,
+        }
+    }
+}
+
+/// The bytes of a script.
+#[derive(Debug)]
+pub enum ScriptBytes {
+    /// Text, which a run may share.
+    Text(Arc<str>),
+    /// What is no UTF-8.
+    Other(Vec<u8>),
+}
+
+impl From<Vec<u8>> for ScriptBytes {
+    fn from(bytes: Vec<u8>) -> Self {
+        String::from_utf8(bytes).map_or_else(|error| Self::Other(error.into_bytes()), |text| Self::Text(text.into()))
+    }
+}
+
+impl ScriptBytes {
+    /// All of them.
+    pub fn as_bytes(&self) -> &[u8] {
+        match self {
+            Self::Text(text) => text.as_bytes(),
+            Self::Other(bytes) => bytes,
+        }
+    }
+
+    /// The text, to be shared.
+    pub fn shared(&self) -> Option<Arc<str>> {
+        match self {
+            Self::Text(text) => Some(Arc::clone(text)),
+            Self::Other(_) => None,
+        }
     }
 }
 
@@ -78,6 +128,8 @@ pub struct Outcome {
     pub reused_faces: usize,
     /// Results that came from the folder of `--cache`.
     pub from_cache: usize,
+    /// What is of no more use.
+    pub remains: Remains,
 }
 
 impl Outcome {

@@ -128,7 +128,7 @@ pub fn arc_through(a: DVec3, b: DVec3, through: DVec3, origin: Origin) -> Result
     let angle = math::atan2(w.dot(v), w.dot(u));
     let sweep = if angle > 0.0 { angle } else { angle + TAU };
     let radius = Some(u.length());
-    Ok(Curve::new(Shape::Arc(EllipticArc { center, u, v, sweep, radius }), Kind::Arc, origin).built_through(Some(through)))
+    Ok(Curve::new(Shape::Arc(Box::new(EllipticArc { center, u, v, sweep, radius })), Kind::Arc, origin).built_through(Some(through)))
 }
 
 /// The angle as a positive sweep and a sign; E411 for zero and E412 beyond one turn.
@@ -163,7 +163,7 @@ fn round_arc(center: DVec3, start: DVec3, normal: DVec3, sweep: f64, sign: f64, 
         return Err(ValueFault::NotAcross { argument: "normal", angle, to }.into());
     }
     let v = normal.cross(radial).normalize() * (u.length() * sign);
-    Ok(Curve::new(Shape::Arc(EllipticArc { center, u, v, sweep, radius: Some(u.length()) }), kind, origin))
+    Ok(Curve::new(Shape::Arc(Box::new(EllipticArc { center, u, v, sweep, radius: Some(u.length()) })), kind, origin))
 }
 
 /// Whole circle that begins at `start`, counter-clockwise seen against `normal`.
@@ -183,7 +183,7 @@ pub fn circle(center: DVec3, radius: f64, normal: DVec3, origin: Origin) -> Resu
     let x = if along(DVec3::X).length() > PARALLEL { along(DVec3::X) } else { along(DVec3::Y) };
     let u = x.normalize() * radius;
     let arc = EllipticArc { center, u, v: normal.cross(u), sweep: TAU, radius: Some(radius) };
-    Ok(Curve::new(Shape::Arc(arc), Kind::Circle, origin))
+    Ok(Curve::new(Shape::Arc(Box::new(arc)), Kind::Circle, origin))
 }
 
 /// Ellipse with semi-axes `major` and `minor` (vectors at right angles), from parameter angle `from` by `sweep` radians.
@@ -199,7 +199,7 @@ pub fn ellipse(center: DVec3, major: DVec3, minor: DVec3, from: f64, sweep: f64,
     let (sweep, sign) = sweep_of(sweep, "angle", origin)?;
     let (s, c) = math::sin_cos(from);
     let arc = EllipticArc::new(center, major * c + minor * s, (minor * c - major * s) * sign, sweep);
-    Ok(Curve::new(Shape::Arc(arc), Kind::Ellipse, origin))
+    Ok(Curve::new(Shape::Arc(Box::new(arc)), Kind::Ellipse, origin))
 }
 
 /// Conic section from `a` to `b` with tangents towards `apex`; `rho` in (0, 1), ½ is a parabola.

@@ -262,7 +262,7 @@ impl Plan {
                 let (u, v) = (start.cross(normal) * radius, start * radius);
                 let sweep = math::atan2(start.cross(end).dot(normal), start.dot(end));
                 let arc = EllipticArc { center: p - u, u, v, sweep, radius: Some(radius) };
-                Curve::new(Shape::Arc(arc), Kind::Arc, self.origin)
+                Curve::new(Shape::Arc(Box::new(arc)), Kind::Arc, self.origin)
             }
             _ => Curve::new(Shape::Line(p, q), Kind::Line, self.origin),
         }

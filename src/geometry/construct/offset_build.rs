@@ -104,7 +104,7 @@ impl OffsetPlan {
                 let by = self.normal.cross(*b - *a).normalize() * self.distance;
                 Shape::Line(*a + by, *b + by)
             }
-            Shape::Arc(arc) if arc.radius.is_some() => Shape::Arc(self.round(arc)?),
+            Shape::Arc(arc) if arc.radius.is_some() => Shape::Arc(Box::new(self.round(arc)?)),
             Shape::Offset(inner) => {
                 let turned = inner.normal.dot(self.normal).signum();
                 let distance = inner.distance + turned * self.distance;

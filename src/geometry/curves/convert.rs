@@ -24,7 +24,7 @@ impl Curve {
             Shape::Arc(arc) => {
                 let image = EllipticArc::new(point(arc.center), vector(arc.u), vector(arc.v), arc.sweep);
                 let kind = if image.radius.is_some() { self.kind() } else { Kind::Ellipse };
-                (Shape::Arc(image), kind)
+                (Shape::Arc(Box::new(image)), kind)
             }
             Shape::Nurbs(c) => {
                 let poles = c.poles.iter().map(|q| weighted(point(projected(*q)), q.w)).collect();

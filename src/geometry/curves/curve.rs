@@ -26,7 +26,7 @@ pub enum Shape {
     /// From a (parameter 0) to b (parameter 1).
     Line(DVec3, DVec3),
     /// Arc of a circle or an ellipse; the parameter is its angle from 0.
-    Arc(EllipticArc),
+    Arc(Box<EllipticArc>),
     /// Rational B-spline.
     Nurbs(Arc<Nurbs>),
     /// Helix; the parameter is its angle from 0.
@@ -50,7 +50,7 @@ struct Inner {
     kind: Kind,
     origin: Origin,
     /// The inner point that the user gave: an arc through three points is built anew from it.
-    through: Option<DVec3>,
+    through: Option<Box<DVec3>>,
     lengths: OnceLock<Arc<Lengths>>,
     pieces: OnceLock<Arc<Pieces>>,
 }
@@ -89,7 +89,7 @@ impl Curve {
             shape: shape.clone(),
             kind: *kind,
             origin: *origin,
-            through,
+            through: through.map(Box::new),
             lengths: OnceLock::new(),
             pieces: OnceLock::new(),
         }))
@@ -97,14 +97,14 @@ impl Curve {
 
     /// The point between its ends through which it was built.
     pub(crate) fn through(&self) -> Option<DVec3> {
-        self.0.through
+        self.0.through.as_deref().copied()
     }
 
     /// The same curve, made by another expression.
     pub fn with_origin(&self, origin: Origin) -> Self {
         let Inner { shape, kind, through, lengths, pieces, .. } = &*self.0;
         let (shape, lengths, pieces) = (shape.clone(), lengths.clone(), pieces.clone());
-        Self(Arc::new(Inner { shape, kind: *kind, origin, through: *through, lengths, pieces }))
+        Self(Arc::new(Inner { shape, kind: *kind, origin, through: through.clone(), lengths, pieces }))
     }
 
     /// The same shape, as if made with another word.
@@ -232,6 +232,12 @@ impl Curve {
         self.0.pieces.get_or_init(|| Arc::new(work::uncharged(|| Pieces::of(self))))
     }
 
+    /// The pieces of a straight line that does not have them already: they are made in no time, and of very many lines not worth keeping.
+    pub(crate) fn passing_pieces(&self) -> Option<Pieces> {
+        let is_new = matches!(self.0.shape, Shape::Line(..)) && self.0.pieces.get().is_none();
+        is_new.then(|| work::uncharged(|| Pieces::of(self)))
+    }
+
     /// Parameters between which the curve is one analytic piece, ends included.
     pub fn knots(&self) -> Vec<f64> {
         match &self.0.shape {
@@ -252,13 +258,13 @@ impl Curve {
     pub fn reversed(&self) -> Self {
         let reversed = self.with_shape(match &self.0.shape {
             Shape::Line(a, b) => Shape::Line(*b, *a),
-            Shape::Arc(arc) => Shape::Arc(arc.reversed()),
+            Shape::Arc(arc) => Shape::Arc(Box::new(arc.reversed())),
             Shape::Nurbs(c) => Shape::Nurbs(Arc::new(c.reversed())),
             Shape::Helix(helix) => Shape::Helix(Box::new(helix.reversed())),
             Shape::Offset(offset) => Shape::Offset(Box::new(offset.reversed())),
             Shape::Composite(c) => Shape::Composite(Arc::new(Composite::new(c.pieces.iter().rev().map(Self::reversed)))),
         });
-        if self.0.through.is_none() { reversed } else { reversed.built_through(self.0.through) }
+        if self.0.through.is_none() { reversed } else { reversed.built_through(self.through()) }
     }
 
     /// The exact piece between two parameters of the domain, `t0 < t1`; a whole circle's part is an arc.
@@ -274,7 +280,7 @@ impl Curve {
                 let at = |t: f64| if t == 1.0 { *b } else { line_jet(*a, *b, t).p };
                 Shape::Line(at(t0), at(t1))
             }
-            Shape::Arc(arc) => Shape::Arc(arc.part(t0, t1)),
+            Shape::Arc(arc) => Shape::Arc(Box::new(arc.part(t0, t1))),
             Shape::Nurbs(c) => Shape::Nurbs(Arc::new(c.part(t0, t1))),
             Shape::Helix(helix) => Shape::Helix(Box::new(helix.part(t0, t1))),
             Shape::Offset(offset) => Shape::Offset(Box::new(offset.part(t0, t1))),
@@ -293,13 +299,13 @@ impl Curve {
     pub fn moved(&self, motion: &Motion) -> Self {
         let moved = self.with_shape(match &self.0.shape {
             Shape::Line(a, b) => Shape::Line(motion.point(*a), motion.point(*b)),
-            Shape::Arc(arc) => Shape::Arc(arc.moved(motion)),
+            Shape::Arc(arc) => Shape::Arc(Box::new(arc.moved(motion))),
             Shape::Nurbs(c) => Shape::Nurbs(Arc::new(c.moved(motion))),
             Shape::Helix(helix) => Shape::Helix(Box::new(helix.moved(motion))),
             Shape::Offset(offset) => Shape::Offset(Box::new(offset.moved(motion))),
             Shape::Composite(c) => Shape::Composite(Arc::new(Composite::new(c.pieces.iter().map(|p| p.moved(motion))))),
         });
-        if self.0.through.is_none() { moved } else { moved.built_through(self.0.through.map(|p| motion.point(p))) }
+        if self.0.through.is_none() { moved } else { moved.built_through(self.through().map(|p| motion.point(p))) }
     }
 
     /// A box that holds the curve (of control points where the exact one costs more).

@@ -9,7 +9,6 @@ use crate::base::range::{Interval, Interval3};
 use crate::base::tolerance::{EPSILON, SLIVER};
 use crate::base::work;
 use crate::geometry::curves::curve::{Curve, Shape};
-use crate::geometry::shapes::arc::EllipticArc;
 use crate::geometry::shapes::nurbs::{Nurbs, projected};
 use crate::geometry::shapes::nurbs_edit::Bezier;
 
@@ -45,11 +44,13 @@ pub fn enclosure(curve: &Curve, t0: f64, t1: f64) -> Enclosure {
     work::spend(4);
     match curve.shape() {
         Shape::Line(a, b) => Enclosure::smooth(Interval3::at((*b - *a).normalize_or_zero()), Interval3::default()),
-        Shape::Arc(EllipticArc { u, v, radius: Some(r), .. }) => {
-            let (out, along) = turned(*u, *v, t0, t1);
-            Enclosure::smooth(along * (1.0 / r), out * (-1.0 / (r * r)))
-        }
-        Shape::Arc(arc) => of_nurbs(&arc.part(t0, t1).to_nurbs(), 0.0),
+        Shape::Arc(arc) => match arc.radius {
+            Some(r) => {
+                let (out, along) = turned(arc.u, arc.v, t0, t1);
+                Enclosure::smooth(along * (1.0 / r), out * (-1.0 / (r * r)))
+            }
+            None => of_nurbs(&arc.part(t0, t1).to_nurbs(), 0.0),
+        },
         Shape::Helix(helix) => {
             let (out, along) = turned(helix.u, helix.v, t0, t1);
             let speed = helix.speed();

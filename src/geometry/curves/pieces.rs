@@ -8,6 +8,7 @@ use crate::geometry::shapes::bounds::Rates;
 use glam::{DVec3, DVec4};
 
 use crate::base::bbox::Box3;
+use crate::base::few::Few;
 use crate::base::math;
 use crate::base::tolerance::EPSILON;
 use crate::geometry::curves::curve::{Curve, Shape};
@@ -142,25 +143,57 @@ pub(crate) struct Piece {
 /// All pieces of one curve in order, and boxes over runs of them.
 #[derive(Clone, Debug)]
 pub(crate) struct Pieces {
-    pub(crate) sections: Vec<Section>,
-    pub(crate) pieces: Vec<Piece>,
+    pub(crate) sections: Few<Section, 1>,
+    pub(crate) pieces: Few<Piece, 1>,
     /// Boxes in preorder: node, left half of its pieces, right half.
-    tree: Vec<Box3>,
+    tree: Few<Box3, 1>,
+}
+
+/// Sections and pieces on their way.
+#[derive(Default)]
+struct Cut {
+    sections: Vec<Section>,
+    pieces: Vec<Piece>,
 }
 
 impl Pieces {
     /// Cuts a curve at its corners and where its direction has turned far enough.
     pub(crate) fn of(curve: &Curve) -> Self {
-        let mut made = Self { sections: Vec::new(), pieces: Vec::new(), tree: Vec::new() };
-        match curve.composite() {
-            Some(c) => c.pieces.iter().enumerate().for_each(|(i, piece)| made.add(piece, i, |t| c.common(i, t))),
-            None => made.add(curve, 0, |t| t),
+        if let Shape::Line(..) = curve.shape() {
+            return Self::of_line(curve);
         }
-        made.tree = vec![Box3::EMPTY; 2 * made.pieces.len() - 1];
-        made.grow_tree(0, 0, made.pieces.len());
-        made
+        let mut cut = Cut::default();
+        match curve.composite() {
+            Some(c) => c.pieces.iter().enumerate().for_each(|(i, piece)| cut.add(piece, i, |t| c.common(i, t))),
+            None => cut.add(curve, 0, |t| t),
+        }
+        let mut tree = vec![Box3::EMPTY; 2 * cut.pieces.len() - 1];
+        grow_tree(&cut.pieces, &mut tree, 0, 0, cut.pieces.len());
+        Self { sections: cut.sections.into(), pieces: cut.pieces.into(), tree: tree.into() }
     }
 
+    /// The one piece of a straight line, without a list on the heap: in models of very many lines most are asked for once.
+    fn of_line(curve: &Curve) -> Self {
+        let (range, rates) = (curve.domain(), Rates { turn: 0.0, bend: 0.0 });
+        let section = Section { part: 0, range, common: range, ends: (curve.point(range.0), curve.point(range.1)) };
+        let node = Node::new(&View { curve, section }, range, section.ends, rates);
+        Self { sections: [section].into(), pieces: [Piece { node, rates, section: 0 }].into(), tree: [node.bounds()].into() }
+    }
+
+    /// The box of the tree's node `at`.
+    #[inline]
+    pub(crate) fn bounds(&self, at: usize) -> &Box3 {
+        &self.tree[at]
+    }
+
+    /// Section `index` as something that can be evaluated.
+    pub(crate) fn view_of<'a>(&self, curve: &'a Curve, index: usize) -> View<'a> {
+        let section = self.sections[index];
+        View { curve: curve.composite().map_or(curve, |c| &c.pieces[section.part]), section }
+    }
+}
+
+impl Cut {
     fn add(&mut self, curve: &Curve, part: usize, common: impl Fn(f64) -> f64) {
         let (a, b) = curve.domain();
         let mut ends = vec![a];
@@ -178,29 +211,17 @@ impl Pieces {
             }
         }
     }
+}
 
-    fn grow_tree(&mut self, at: usize, low: usize, high: usize) -> Box3 {
-        let bounds = if high - low == 1 {
-            self.pieces[low].node.bounds()
-        } else {
-            let (left, right, middle) = children(at, low, high);
-            self.grow_tree(left, low, middle).union(self.grow_tree(right, middle, high))
-        };
-        self.tree[at] = bounds;
-        bounds
-    }
-
-    /// The box of the tree's node `at`.
-    #[inline]
-    pub(crate) fn bounds(&self, at: usize) -> &Box3 {
-        &self.tree[at]
-    }
-
-    /// Section `index` as something that can be evaluated.
-    pub(crate) fn view_of<'a>(&self, curve: &'a Curve, index: usize) -> View<'a> {
-        let section = self.sections[index];
-        View { curve: curve.composite().map_or(curve, |c| &c.pieces[section.part]), section }
-    }
+fn grow_tree(pieces: &[Piece], tree: &mut [Box3], at: usize, low: usize, high: usize) -> Box3 {
+    let bounds = if high - low == 1 {
+        pieces[low].node.bounds()
+    } else {
+        let (left, right, middle) = children(at, low, high);
+        grow_tree(pieces, tree, left, low, middle).union(grow_tree(pieces, tree, right, middle, high))
+    };
+    tree[at] = bounds;
+    bounds
 }
 
 /// Tree nodes of both halves of a node over the pieces `low..high`, and where they part.

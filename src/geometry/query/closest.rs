@@ -18,6 +18,9 @@ use crate::geometry::shapes::bounds::Rates;
 /// Parts looked at before the best so far is taken; far beyond what curves need that are no circles about the point.
 const MOST_PARTS: usize = 200_000;
 
+/// Parts that are halved before a curve counts as near.
+const LOOKED_AT: usize = 64;
+
 /// Pairs of parts looked at at most; parallel curves, where all are equally near, would need them all.
 const MOST_PAIRS: usize = 20_000;
 
@@ -49,6 +52,31 @@ pub fn closest(curve: &Curve, p: DVec3) -> Closest {
     search.descend(0, 0, pieces.pieces.len());
     let (t, point, distance) = search.best;
     Closest { t, point, distance }
+}
+
+/// Whether a curve may come as near to a point as `reach`, by bounds alone; `false` is certain.
+pub fn may_come_near(curve: &Curve, p: DVec3, reach: f64) -> bool {
+    fn part(view: &View, node: &Node, rates: Rates, p: DVec3, reach: f64, left: &mut usize) -> bool {
+        let apart = segments(node.p, (p, p)).0.sqrt();
+        if apart - node.bulge > reach {
+            return false;
+        }
+        // What bulges less than it is off is as near as its chord.
+        if apart <= reach || *left == 0 || !node.can_split() {
+            return true;
+        }
+        *left -= 1;
+        node.halves(view, rates).iter().any(|half| part(view, half, rates, p, reach, left))
+    }
+    if let &Shape::Line(a, b) = curve.shape() {
+        return segments((a, b), (p, p)).0.sqrt() <= reach + ROUNDING_SHARE * (a.distance(b) + a.distance(p));
+    }
+    let (pieces, mut left) = (curve.pieces(), LOOKED_AT);
+    let reach = reach + ROUNDING_SHARE * (pieces.bounds(0).diagonal() + curve.start().distance(p));
+    if distance_to_box(pieces.bounds(0), p) > reach {
+        return false;
+    }
+    pieces.pieces.iter().any(|piece| part(&pieces.view_of(curve, piece.section), &piece.node, piece.rates, p, reach, &mut left))
 }
 
 /// Branch and bound for one point.

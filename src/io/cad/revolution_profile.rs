@@ -124,7 +124,7 @@ fn parts(curve: &Curve, axis: &Axis, tolerance: &Tolerance) -> Result<Option<Vec
             Shape::Arc(arc) => {
                 let (from, to) = (stops[stops.len() - 2], stops[1] + arc.sweep);
                 let kind = if arc.radius.is_some() { Kind::Arc } else { Kind::Ellipse };
-                Curve::new(Shape::Arc(arc.part(from, to)), kind, curve.origin())
+                Curve::new(Shape::Arc(Box::new(arc.part(from, to))), kind, curve.origin())
             }
             _ => {
                 let pieces = crate::io::cad::border::pieces(&last).into_iter().chain(crate::io::cad::border::pieces(&first));

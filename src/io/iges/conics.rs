@@ -47,7 +47,7 @@ pub fn arc(level: &Level, [center, start, end]: [DVec2; 3]) -> Result<Missed, De
     let v = u.perp();
     let arc = EllipticArc::new(level.point(center), u.extend(0.0), v.extend(0.0), sweep);
     let kind = if sweep == TURN { Kind::Circle } else { Kind::Arc };
-    Ok((Curve::new(Shape::Arc(arc), kind, level.origin), (radius - e.length()).abs()))
+    Ok((Curve::new(Shape::Arc(Box::new(arc)), kind, level.origin), (radius - e.length()).abs()))
 }
 
 /// The angle of a run that is a whole turn when its ends are one.
@@ -99,7 +99,7 @@ fn ellipse(level: &Level, center: DVec2, q: impl Fn(DVec2) -> DVec2, [start, end
     let e = end - center;
     let sweep = swept(math::atan2(e.dot(q(v)), e.dot(q(p))), start.distance(end) <= level.same);
     let arc = EllipticArc::new(level.point(center), p.extend(0.0), v.extend(0.0), sweep);
-    Ok(Curve::new(Shape::Arc(arc), Kind::Ellipse, level.origin))
+    Ok(Curve::new(Shape::Arc(Box::new(arc)), Kind::Ellipse, level.origin))
 }
 
 /// The rational quadratic piece between two points of a hyperbola or parabola, from its equation XᵀMX = 0.

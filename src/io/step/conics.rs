@@ -84,7 +84,7 @@ impl Endless {
                     (true, false) => Kind::Arc,
                     (false, _) => Kind::Ellipse,
                 };
-                Ok(Curve::new(Shape::Arc(arc), kind, origin))
+                Ok(Curve::new(Shape::Arc(Box::new(arc)), kind, origin))
             }
             Self::Hyperbola(c, u, v) => {
                 let (middle, w) = (0.5 * (t0 + t1), math::cosh(0.5 * (t1 - t0)));

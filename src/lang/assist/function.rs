@@ -92,7 +92,7 @@ impl Function {
             Parameter { shown, default, ..Parameter::new(code.text(p.bound.name), ty, "") }
         };
         let params: Vec<Parameter> = params.iter().map(parameter).collect();
-        let gives = scripts.result_of_fn(unit, declaration);
+        let gives = scripts.result_of_fn(unit, &declaration);
         let result = if gives == KnownType::Unknown { String::new() } else { format!(" → {}", gives.signature()) };
         let list: Vec<String> = params.iter().map(Parameter::signature).collect();
         let signature = format!("{name}({}){result}", list.join(", "));

@@ -30,7 +30,7 @@ impl Scripts<'_> {
         if let Some(shape) = home.shapes.borrow().get(&at) {
             return shape.clone();
         }
-        let Some(found) = self.deeper(|| self.declared(unit, declaration)) else { return KnownType::Unknown };
+        let Some(found) = self.deeper(|| self.declared(unit, &declaration)) else { return KnownType::Unknown };
         let found = match found {
             KnownType::List(of) if *of == KnownType::Unknown => self.last_run(unit, name).or(|| KnownType::list(KnownType::Unknown)),
             // What a file holds is known once it was read.
@@ -170,11 +170,11 @@ impl Scripts<'_> {
         let before = of.map(|of| self.shape(code, of, locals));
         if let Some(KnownType::Module(module)) = before {
             let home = self.unit(module);
-            return home.declaration(name).map_or(KnownType::Unknown, |(_, declaration)| self.result_of_fn(module, declaration));
+            return home.declaration(name).map_or(KnownType::Unknown, |(_, declaration)| self.result_of_fn(module, &declaration));
         }
         let home = self.unit(code.unit);
         if let Some((_, declaration)) = home.declaration(name).filter(|(_, d)| d.keyword == Keyword::Fn) {
-            return self.result_of_fn(code.unit, declaration);
+            return self.result_of_fn(code.unit, &declaration);
         }
         let first = before.or_else(|| args.first().map(|arg| self.shape(code, arg.value, locals)));
         let first = first.unwrap_or_default();
@@ -206,7 +206,7 @@ impl Scripts<'_> {
             (Some(shape), _) => shape,
             (None, Some(_)) => {
                 let home = self.unit(unit);
-                home.declaration(name).map_or(KnownType::Unknown, |(_, declaration)| self.result_of_fn(unit, declaration))
+                home.declaration(name).map_or(KnownType::Unknown, |(_, declaration)| self.result_of_fn(unit, &declaration))
             }
             (None, None) => of_builtin(name, of),
         }

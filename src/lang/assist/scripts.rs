@@ -3,6 +3,7 @@
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 use std::rc::Rc;
+use std::sync::Arc;
 
 use crate::lang::assist::shape::KnownType;
 use crate::lang::diag::diagnostic::FileId;
@@ -57,17 +58,17 @@ impl Unit {
                 order.push(name.to_owned());
             }
         }
-        for (at, declaration) in script.declarations.iter().enumerate().rev() {
-            let Some(bound) = crate::lang::syntax::scopes::bound(declaration) else { continue };
-            let entry = ScriptName { keyword: declaration.keyword, declaration: Some(at) };
+        for at in (0..script.declarations.len()).rev() {
+            let Some(bound) = script.declarations.bound(at) else { continue };
+            let entry = ScriptName { keyword: script.declarations.keyword(at), declaration: Some(at) };
             declared.insert(names.text(bound.name).to_owned(), entry);
         }
         Self { path, text, script, names, declared, order, spans, shapes: RefCell::default() }
     }
 
-    pub fn declaration(&self, name: &str) -> Option<(usize, &Declaration)> {
+    pub fn declaration(&self, name: &str) -> Option<(usize, Arc<Declaration>)> {
         let at = self.declared.get(name)?.declaration?;
-        Some((at, &self.script.declarations[at]))
+        Some((at, self.script.declarations.whole(at)))
     }
 
     /// A declaration's text.
@@ -135,7 +136,7 @@ impl<'o> Scripts<'o> {
     pub fn shape_of_text(&self, unit: usize, text: &str, locals: &mut Locals) -> KnownType {
         let mut names = Names::default();
         let (script, _) = parse(&format!("let x = {text}"), FileId(0), &mut names);
-        let Some(declaration) = script.declarations.first() else { return KnownType::Unknown };
+        let Some(declaration) = script.declarations.iter().next() else { return KnownType::Unknown };
         let DeclarationKind::Value { value, .. } = &declaration.kind else { return KnownType::Unknown };
         self.shape(NamedExpressions { unit, names: &names, nodes: &declaration.nodes }, *value, locals)
     }

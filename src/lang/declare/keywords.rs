@@ -9,10 +9,9 @@ use crate::lang::eval::machine::{Code, Gather};
 use crate::lang::eval::room::LIST_COST;
 use crate::lang::eval::std;
 use crate::lang::syntax::ast::{Declaration, DeclarationKind, ExprId, FnParam, For, Keyword, TypeName};
-use crate::lang::syntax::scopes::bound;
 use crate::lang::values::origins::{NO_MEMBER, OriginEntry};
 use crate::lang::values::types::{TYPE_NAMES, Ty};
-use crate::lang::values::value::{ModuleId, Value};
+use crate::lang::values::value::{Dim, ModuleId, Value};
 use crate::lang::words::names::Name;
 use crate::network::Chain;
 
@@ -80,12 +79,14 @@ impl Cx<'_> {
             _ => return self.eval(code, value),
         };
         let found = self.eval(code, value)?;
-        let fits = matches!((ty, &found), (Ty::Curve, Value::Curve(_)) | (Ty::Surface, Value::Surface(_)));
-        let fitted = if fits {
-            found
-        } else {
-            let subject = format!("`{}`", self.declaration_name(code.module, code.declaration));
-            self.fit_expr(code, value, found, ty, &subject)?
+        let fitted = match (ty, found) {
+            (Ty::Curve, found @ Value::Curve(_)) | (Ty::Surface, found @ Value::Surface(_)) => found,
+            (Ty::Point, Value::Vector(p, Dim::NONE)) => Value::point(p * self.bare_unit(code.module)),
+            (Ty::Point, Value::Vector(p, Dim::LENGTH)) => Value::point(p),
+            (ty, found) => {
+                let subject = format!("`{}`", self.declaration_name(code.module, code.declaration));
+                self.fit_expr(code, value, found, ty, &subject)?
+            }
         };
         match (keyword, fitted) {
             (Keyword::Curve, Value::Curve(chain)) => {
@@ -128,8 +129,8 @@ impl Cx<'_> {
         let mut gather = Gather::default();
         let text = self.program.names.text(name).to_owned();
         if std::builtins().any(|b| b.name == text) {
-            let span = self.machine.at(code.module).script.declarations[code.declaration as usize].keyword_span;
-            let span = bound(&self.machine.at(code.module).script.declarations[code.declaration as usize]).map_or(span, |b| b.span);
+            let span = self.machine.at(code.module).script.declarations.keyword_span(code.declaration as usize);
+            let span = self.machine.at(code.module).script.declarations.bound(code.declaration as usize).map_or(span, |b| b.span);
             let draft = self.error(code, "E202", format!("`{text}` is a function of the language"), span, "taken");
             gather.take::<()>(Err(draft.help(format!("another name: `my_{text}`")).put(span, format!("my_{text}")).stop()));
         }
@@ -167,7 +168,7 @@ impl Cx<'_> {
     pub(crate) fn count_words(&self, members: &[(ModuleId, u32)]) -> String {
         let mut counts: Vec<(Keyword, usize)> = Vec::new();
         for (m, d) in members {
-            let keyword = self.machine.at(*m).script.declarations[*d as usize].keyword;
+            let keyword = self.machine.at(*m).script.declarations.keyword(*d as usize);
             match counts.iter_mut().find(|c| c.0 == keyword) {
                 Some(count) => count.1 += 1,
                 None => counts.push((keyword, 1)),

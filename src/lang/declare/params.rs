@@ -9,7 +9,6 @@ use crate::lang::eval::halt::Halt;
 use crate::lang::eval::machine::Code;
 use crate::lang::eval::module::{Given, Written};
 use crate::lang::syntax::ast::{Allowed, Bound, DeclarationKind, Expr, ExprId, Keyword, Node, TextPart, TypeName, Unary};
-use crate::lang::syntax::scopes::bound;
 use crate::lang::values::types::Ty;
 use crate::lang::values::units;
 use crate::lang::values::value::{Dim, ModuleId, Quantity, Value};
@@ -165,11 +164,12 @@ impl Cx<'_> {
         if !mistakes.is_empty() {
             return None;
         }
-        match script.declarations.as_slice() {
-            [only] => match &only.kind {
-                DeclarationKind::Value { value, family, .. } if family.is_empty() => self.literal_value(&only.nodes, *value),
-                _ => None,
-            },
+        if script.declarations.len() != 1 {
+            return None;
+        }
+        let only = script.declarations.whole(0);
+        match &only.kind {
+            DeclarationKind::Value { value, family, .. } if family.is_empty() => self.literal_value(&only.nodes, *value),
             _ => None,
         }
     }
@@ -208,7 +208,7 @@ impl Cx<'_> {
     /// Params that a `--set`, a table or a `use` names, each checked to exist; E219 with the nearest one.
     pub(crate) fn give(&mut self, module: ModuleId, name: &str, given: Given) -> Result<(), Box<Diagnostic>> {
         let script = self.machine.at(module).script.clone();
-        let params = || script.declarations.iter().filter(|d| d.keyword == Keyword::Param).filter_map(bound);
+        let params = || script.declarations.with_keyword(Keyword::Param).filter_map(|at| script.declarations.bound(at));
         if let Some(b) = params().find(|b| self.program.names.text(b.name) == name) {
             self.machine.at_mut(module).given.push((b.name, given));
             return Ok(());

@@ -20,8 +20,8 @@ impl Rounds {
     /// The rounds of a script.
     pub fn of(cx: &Cx, module: ModuleId) -> Self {
         let script = &cx.machine.at(module).script;
-        let needs: Vec<Vec<usize>> = script.declarations.iter().map(|d| cx.needs(module, d)).collect();
-        let moves: Vec<bool> = script.declarations.iter().map(|d| matches!(d.keyword, Keyword::Curve | Keyword::Use)).collect();
+        let needs: Vec<Vec<usize>> = script.declarations.iter().map(|d| cx.needs(module, &d)).collect();
+        let moves: Vec<bool> = script.declarations.keywords().map(|keyword| matches!(keyword, Keyword::Curve | Keyword::Use)).collect();
         let of = rounds(&needs, &moves);
         let count = of.iter().zip(&moves).filter(|(_, moves)| **moves).map(|(round, _)| round + 1).max().unwrap_or(0);
         let named = reached(&needs, (0..needs.len()).filter(|i| moves[*i]).flat_map(|i| needs[i].iter().copied()));

@@ -18,7 +18,6 @@ use crate::lang::eval::memory::Keys;
 use crate::lang::eval::module::State;
 use crate::lang::eval::stages;
 use crate::lang::syntax::ast::{DeclarationKind, ExprId, Keyword};
-use crate::lang::syntax::scopes::bound;
 use crate::lang::values::origins::NO_MEMBER;
 use crate::lang::values::types::Ty;
 use crate::lang::values::value::{Dim, ModuleId, Value};
@@ -77,7 +76,7 @@ impl Cx<'_> {
     fn snap_distance(&mut self, module: ModuleId) -> Option<SnapStatement> {
         let index = self.single(module, Keyword::Snap)?;
         let script = self.machine.at(module).script.clone();
-        let DeclarationKind::Snap(expr) = script.declarations[index as usize].kind else { return None };
+        let DeclarationKind::Snap(expr) = script.declarations.whole(index as usize).kind else { return None };
         let values = self.head(module, index, &[(expr, Ty::Quantity(Dim::LENGTH), "the distance")])?;
         let [Value::Number(distance)] = values.as_slice() else { return None };
         Some(SnapStatement { distance: distance.value, index, expr })
@@ -88,9 +87,9 @@ impl Cx<'_> {
     fn evaluate_round(&mut self, module: ModuleId, rounds: &Rounds, round: u32) {
         let (tolerance, seen) = (self.tolerance.take(), std::mem::replace(&mut self.seen, Box3::EMPTY));
         let script = self.machine.at(module).script.clone();
-        for (i, declaration) in script.declarations.iter().enumerate() {
+        for (i, keyword) in script.declarations.keywords().enumerate() {
             let waits = matches!(self.machine.at(module).states[i], State::Waiting);
-            if waits && rounds.of[i] <= round && LOOKED_AT.contains(&declaration.keyword) {
+            if waits && rounds.of[i] <= round && LOOKED_AT.contains(&keyword) {
                 self.ensure_all(module, i as u32);
             }
         }
@@ -130,7 +129,7 @@ impl Cx<'_> {
         let sound = result.is_ok();
         if let Err(stop) = result {
             let script = self.machine.at(module).script.clone();
-            let declaration = &script.declarations[index as usize];
+            let declaration = script.declarations.whole(index as usize);
             let code = Code { nodes: &declaration.nodes, module, declaration: index };
             self.settle(code, stop, declaration.span);
         }
@@ -166,8 +165,8 @@ impl Cx<'_> {
             }
         }
         let script = self.machine.at(module).script.clone();
-        for (i, declaration) in script.declarations.iter().enumerate() {
-            if declaration.keyword == Keyword::Curve
+        for (i, keyword) in script.declarations.keywords().enumerate() {
+            if keyword == Keyword::Curve
                 && has_turn(i)
                 && let State::Done(value) = &self.machine.at(module).states[i]
             {
@@ -219,15 +218,15 @@ impl Cx<'_> {
     fn forget(&mut self, module: ModuleId, stale: &[bool]) {
         let script = self.machine.at(module).script.clone();
         let mut again = vec![false; stale.len()];
-        for (i, declaration) in script.declarations.iter().enumerate().filter(|(i, _)| stale[*i]) {
+        for i in (0..stale.len()).filter(|i| stale[*i]) {
             // A second declaration of one name stays refused.
-            let first = bound(declaration).is_none_or(|b| self.machine.at(module).find(b.name) == Some(i as u32));
+            let first = script.declarations.bound(i).is_none_or(|b| self.machine.at(module).find(b.name) == Some(i as u32));
             let evaluated = !matches!(self.machine.at(module).states[i], State::Waiting | State::Running | State::Suspended);
             self.machine.at_mut(module).within.remove(&(i as u32));
             if first && evaluated {
                 self.machine.at_mut(module).states[i] = State::Waiting;
                 again[i] = true;
-                if declaration.keyword == Keyword::Use {
+                if script.declarations.keyword(i) == Keyword::Use {
                     self.unload(module, i as u32);
                 }
             }

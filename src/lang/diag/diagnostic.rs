@@ -1,6 +1,6 @@
 //! Diagnostics: what is said about a script, with places in it.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use crate::base::fault::{Code, Edit, Fault, Report, Say, Severity, Subject};
 use crate::base::limits::REPORTS_TOLD;
@@ -195,7 +195,7 @@ pub struct SourceFile {
     /// As the user knows it: `hall.loft`, `parts/ribs.loft`, `<stdin>`.
     pub name: String,
     /// Its text.
-    pub text: String,
+    pub text: Arc<str>,
     lines: OnceLock<Vec<u32>>,
 }
 
@@ -210,7 +210,7 @@ pub struct Place {
 
 impl Sources {
     /// Adds a file; the first one is the main script.
-    pub fn add(&mut self, name: impl Into<String>, text: impl Into<String>) -> FileId {
+    pub fn add(&mut self, name: impl Into<String>, text: impl Into<Arc<str>>) -> FileId {
         self.files.push(SourceFile { name: name.into(), text: text.into(), lines: OnceLock::new() });
         FileId::at(self.files.len() - 1)
     }

@@ -47,7 +47,7 @@ impl Cx<'_> {
     /// `ribs.arch`: what a module declares.
     fn member_of(&mut self, code: Code<'_>, id: ExprId, module: ModuleId, name: Name, span: Span) -> Result<Value, Halt> {
         match self.machine.at(module).find(name) {
-            Some(declaration) if self.machine.at(module).script.declarations[declaration as usize].keyword != Keyword::Fn => {
+            Some(declaration) if self.machine.at(module).script.declarations.keyword(declaration as usize) != Keyword::Fn => {
                 self.machine.site.expr = id;
                 self.ensure(module, declaration)
             }

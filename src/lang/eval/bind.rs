@@ -93,8 +93,7 @@ impl Cx<'_> {
         let taken = usize::from(first.is_some());
         // The usual call, positions only, needs no names.
         let simple = rest_at.is_none() && args.iter().all(|a| a.name.is_none()) && args.len() + taken <= builtin.params.len();
-        let places: Vec<usize> =
-            if simple { (taken..taken + args.len()).collect() } else { self.match_args(code, &builtin_signature(builtin), taken, args)? };
+        let places = if simple { None } else { Some(self.match_args(code, &builtin_signature(builtin), taken, args)?) };
         let mut values: Args = vec![Value::None; builtin.params.len()];
         let (mut given, mut rest, mut gather) = (0_u64, Vec::new(), Gather::default());
         if let Some(value) = first {
@@ -108,7 +107,8 @@ impl Cx<'_> {
                 ty => values[0] = gather.take(self.fit_expr(code, of, value, ty, &positional(builtin, 0))).unwrap_or_default(),
             }
         }
-        for (arg, &k) in args.iter().zip(&places) {
+        for (i, arg) in args.iter().enumerate().take(places.as_ref().map_or(args.len(), Vec::len)) {
+            let k = places.as_ref().map_or(taken + i, |places| places[i]);
             let param = &builtin.params[k];
             given |= 1 << k.min(63);
             let subject = || if arg.name.is_some() { quoted(param.name) } else { positional(builtin, k) };

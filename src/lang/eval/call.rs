@@ -99,7 +99,7 @@ impl Cx<'_> {
     pub(crate) fn script_fn(&self, module: ModuleId, name: Name) -> Option<u32> {
         let module = self.machine.at(module);
         let declaration = module.find(name)?;
-        (module.script.declarations[declaration as usize].keyword == Keyword::Fn).then_some(declaration)
+        (module.script.declarations.keyword(declaration as usize) == Keyword::Fn).then_some(declaration)
     }
 
     /// `ribs.rib(3m)`: a function of a module.
@@ -217,7 +217,7 @@ impl Cx<'_> {
             return Err(self.too_deep(code, id));
         }
         let script = self.machine.at(module).script.clone();
-        let declared = &script.declarations[declaration as usize];
+        let declared = script.declarations.whole(declaration as usize);
         let DeclarationKind::Fn { bound, params, returns, body } = &declared.kind else { return Err(Halt::Bug("not a function")) };
         let callee = Code { nodes: &declared.nodes, module, declaration };
         let given = self.fn_args(code, id, bound.name, params, first, args)?;

@@ -37,7 +37,7 @@ impl Cx<'_> {
             let m = self.machine.at(module);
             let Some(index) = m.find(name).filter(|i| local.is_none() && !told.iter().any(|t| t.0 == Some(*i))) else { continue };
             let State::Done(Value::Number(q)) = &m.states[index as usize] else { continue };
-            let declaration = &m.script.declarations[index as usize];
+            let declaration: &Declaration = &m.script.declarations.whole(index as usize);
             let Some((at, name_span)) = value_of(declaration) else { continue };
             let node = &declaration.nodes[at.index()];
             let (source, value) =
@@ -58,8 +58,10 @@ impl Cx<'_> {
     /// Where a text stands in an imported table: "row 2, column `x` of "offsets.csv" holds "12,5"".
     pub(crate) fn cell_of(&self, text: &Arc<str>) -> Option<String> {
         for (m, module) in self.machine.modules.iter().enumerate() {
-            for (declaration, state) in module.script.declarations.iter().zip(&module.states) {
-                let (State::Done(Value::Table(table)), DeclarationKind::Load { path, .. }) = (state, &declaration.kind) else { continue };
+            for (at, state) in module.states.iter().enumerate() {
+                let State::Done(Value::Table(table)) = state else { continue };
+                let declaration = module.script.declarations.whole(at);
+                let DeclarationKind::Load { path, .. } = &declaration.kind else { continue };
                 for (i, row) in table.rows.iter().enumerate() {
                     let found = (0..row.len().unwrap_or(0)).find(|&k| matches!(row.item(k), Some(Value::Text(t)) if Arc::ptr_eq(&t, text)));
                     let Some(k) = found else { continue };

@@ -5,7 +5,6 @@ use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
 use crate::lang::eval::machine::Code;
 use crate::lang::syntax::ast::{Expr, Keyword, Node};
-use crate::lang::syntax::scopes::bound;
 use crate::lang::values::value::ModuleId;
 
 /// Why a circle closes that no name closes.
@@ -31,21 +30,22 @@ impl Cx<'_> {
             .take(4)
             .filter_map(|&(m, d)| {
                 let module = self.machine.at(m);
-                let b = bound(&module.script.declarations[d as usize])?;
+                let b = module.script.declarations.bound(d as usize)?;
                 Some(Label { file: module.file, span: b.span, text: format!("`{}` is declared here", self.program.names.text(b.name)) })
             })
             .collect();
         // The report stands where the last member names the first one again.
         let closing = members.last().copied().unwrap_or((module, index));
         let script = self.machine.at(closing.0).script.clone();
-        let nodes = &script.declarations[closing.1 as usize].nodes;
+        let closed = script.declarations.whole(closing.1 as usize);
+        let nodes = &closed.nodes;
         let code = Code { nodes, module: closing.0, declaration: closing.1 };
-        let first = members.first().and_then(|f| bound(&self.machine.at(f.0).script.declarations[f.1 as usize])).map(|b| b.name);
+        let first = members.first().and_then(|f| self.machine.at(f.0).script.declarations.bound(f.1 as usize)).map(|b| b.name);
         let names_first = |node: &&Node| match node.expr {
             Expr::Name(name) | Expr::Call { name, .. } | Expr::Field { name, .. } => Some(name) == first,
             _ => false,
         };
-        let span = nodes.iter().find(names_first).map_or(script.declarations[closing.1 as usize].span, |n| n.span);
+        let span = nodes.iter().find(names_first).map_or(closed.span, |n| n.span);
         let through_all = self.machine.stages > 0;
         // Of a circle through all curves one can be taken out.
         let outside = members.iter().copied().find(|m| through_all && self.may_stay_out(*m)).map(|m| self.stay_out(m));
@@ -61,7 +61,7 @@ impl Cx<'_> {
     /// The declaration being evaluated that is itself one of these: nothing that asks for all of them can be its part.
     pub(crate) fn own_part(&self, module: ModuleId, keywords: &[Keyword]) -> Option<(ModuleId, u32)> {
         let script = &self.machine.at(module).script;
-        let is_part = |&&(m, d): &&(ModuleId, u32)| m == module && keywords.contains(&script.declarations[d as usize].keyword);
+        let is_part = |&&(m, d): &&(ModuleId, u32)| m == module && keywords.contains(&script.declarations.keyword(d as usize));
         self.machine.running.iter().rev().find(is_part).copied()
     }
 
@@ -72,13 +72,13 @@ impl Cx<'_> {
         self.machine.in_cycle.extend(&members);
         let site = self.machine.site;
         let script = self.machine.at(site.module).script.clone();
-        let nodes = &script.declarations[site.declaration as usize].nodes;
-        let code = Code { nodes, module: site.module, declaration: site.declaration };
+        let declaration = script.declarations.whole(site.declaration as usize);
+        let code = Code { nodes: &declaration.nodes, module: site.module, declaration: site.declaration };
         let span = self.machine_span(code);
         let names: Vec<String> = members.iter().map(|&(m, d)| self.declaration_name(m, d)).collect();
         let text = format!("`{}` depends on itself: {} → all curves and surfaces → {}", names[0], names.join(" → "), names[0]);
         let help = self.may_stay_out(part).then(|| self.stay_out(part));
-        let keyword = self.machine.at(part.0).script.declarations[part.1 as usize].keyword_span;
+        let keyword = self.machine.at(part.0).script.declarations.keyword_span(part.1 as usize);
         let here = part == (site.module, site.declaration);
         let file = self.machine.at(part.0).file;
         let named = (!here).then(|| Label { file, span: keyword, text: format!("`{}` is one of them", names[0]) });
@@ -92,12 +92,12 @@ impl Cx<'_> {
 
     /// Whether there is a declaration of the same thing that does not belong to all curves and surfaces.
     fn may_stay_out(&self, (module, index): (ModuleId, u32)) -> bool {
-        matches!(self.machine.at(module).script.declarations[index as usize].keyword, Keyword::Curve | Keyword::Point)
+        matches!(self.machine.at(module).script.declarations.keyword(index as usize), Keyword::Curve | Keyword::Point)
     }
 
     fn stay_out(&self, (module, index): (ModuleId, u32)) -> String {
         let name = self.declaration_name(module, index);
-        match self.machine.at(module).script.declarations[index as usize].keyword {
+        match self.machine.at(module).script.declarations.keyword(index as usize) {
             Keyword::Point => format!("`let {name} = …`: a `let` point does not belong to the network"),
             _ => format!("`let {name} = …`: a `let` curve does not belong to the network, so it may be made from all of it"),
         }

@@ -96,7 +96,7 @@ impl<'w> Cx<'w> {
 
     /// Whether a `check` is being evaluated.
     pub fn in_check(&self) -> bool {
-        let keyword = |(module, index): &(ModuleId, u32)| self.machine.at(*module).script.declarations[*index as usize].keyword;
+        let keyword = |(module, index): &(ModuleId, u32)| self.machine.at(*module).script.declarations.keyword(*index as usize);
         self.machine.running.last().map(keyword) == Some(Keyword::Check)
     }
 

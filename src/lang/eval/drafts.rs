@@ -36,8 +36,8 @@ impl<'w> Cx<'w> {
         let mut shown: Vec<Label> = Vec::new();
         for frame in self.machine.calls.iter().rev() {
             let module = self.machine.at(frame.site.module);
-            let nodes = &module.script.declarations[frame.site.declaration as usize].nodes;
-            let Some(node) = nodes.get(frame.site.expr.index()) else { continue };
+            let declaration = module.script.declarations.whole(frame.site.declaration as usize);
+            let Some(node) = declaration.nodes.get(frame.site.expr.index()) else { continue };
             let text = format!("in `{}(…)` called here", self.program.names.text(frame.name));
             let label = Label { file: module.file, span: node.span, text };
             let outermost = frame.site.module == self.machine.running.last().map_or(frame.site.module, |r| r.0)

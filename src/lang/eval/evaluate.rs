@@ -10,36 +10,31 @@ use crate::lang::eval::memory::Dependencies;
 use crate::lang::eval::memory::Ended;
 use crate::lang::eval::memory::Sees;
 use crate::lang::eval::module::State;
-use crate::lang::syntax::ast::{Declaration, Expr, ExprId, Keyword};
+use crate::lang::syntax::ast::{Declaration, ExprId, Keyword};
 use crate::lang::values::origins::NO_MEMBER;
 use crate::lang::values::value::{ModuleId, Value};
 
 impl Cx<'_> {
     /// Evaluates a declaration with everything it depends on, dependencies first, so that long chains stay flat.
     pub(crate) fn ensure_all(&mut self, module: ModuleId, declaration: u32) {
-        let mut stack: Vec<(u32, usize)> = vec![(declaration, 0)];
+        let (mut at, mut stack) = (Some((declaration, 0)), Vec::new());
         self.machine.stamp += 1;
         let stamp = self.machine.stamp;
         let script = self.machine.at(module).script.clone();
-        while let Some((index, from)) = stack.pop() {
+        while let Some((index, from)) = at.take().or_else(|| stack.pop()) {
             if !matches!(self.machine.at(module).states[index as usize], State::Waiting) {
                 continue;
             }
-            let nodes = &script.declarations[index as usize].nodes;
-            let next = (from..nodes.len()).find_map(|k| {
-                let name = match &nodes[k].expr {
-                    Expr::Name(name) | Expr::Call { name, .. } => *name,
-                    _ => return None,
-                };
+            let next = script.declarations.find_use(index as usize, from, |name| {
                 let found = self.machine.at(module).find(name)?;
                 let waits = matches!(self.machine.at(module).states[found as usize], State::Waiting);
                 let fresh = self.machine.at(module).entered[found as usize] != stamp;
-                (waits && fresh && found != index).then_some((k, found))
+                (waits && fresh && found != index).then_some(found)
             });
             match next {
-                Some((k, found)) => {
+                Some((behind, found)) => {
                     self.machine.at_mut(module).entered[index as usize] = stamp;
-                    stack.push((index, k + 1));
+                    stack.push((index, behind));
                     stack.push((found, 0));
                 }
                 None => {
@@ -77,7 +72,7 @@ impl Cx<'_> {
         self.begin(module, index, sees);
         self.machine.running.push((module, index));
         let script = self.machine.at(module).script.clone();
-        let declaration: &Declaration = &script.declarations[index as usize];
+        let declaration: &Declaration = &script.declarations.whole(index as usize);
         let site = Site { module, declaration: index, member: [NO_MEMBER; 2], expr: ExprId(u32::MAX) };
         let site = std::mem::replace(&mut self.machine.site, site);
         let base = std::mem::replace(&mut self.machine.base, self.machine.locals.len());
@@ -137,7 +132,7 @@ impl Cx<'_> {
         self.remember(&ended, asked, seen);
         let Ended { module, index, state, sees, start, .. } = ended;
         // Meshes are numbered anew in each run, so what holds one is not kept.
-        asked.fleeting |= self.machine.at(module).script.declarations[index as usize].keyword == Keyword::Mesh;
+        asked.fleeting |= self.machine.at(module).script.declarations.keyword(index as usize) == Keyword::Mesh;
         self.end(module, index, state, sees, asked);
         self.machine.asked.join(asked);
         self.machine.asked.members += self.machine.room.held().saturating_sub(start.members);

@@ -117,8 +117,7 @@ impl Cx<'_> {
 
     #[cold]
     fn declared(&mut self, code: Code<'_>, id: ExprId, declaration: u32) -> Result<Value, Halt> {
-        let declared = &self.machine.at(code.module).script.declarations[declaration as usize];
-        if declared.keyword == Keyword::Fn {
+        if self.machine.at(code.module).script.declarations.keyword(declaration as usize) == Keyword::Fn {
             let name = self.declaration_name(code.module, declaration);
             let draft = self.error(code, "E211", format!("`{name}` is a function"), code.span(id), "functions are not values");
             return Err(draft.help(format!("call it: `{name}(…)`")).stop());

@@ -23,7 +23,7 @@ impl Say for Cx<'_> {
         let Some(place) = self.program.origins.place(origin) else { return String::new() };
         let outer = self.outermost(place);
         let module = self.machine.at(outer.module);
-        let declaration = &module.script.declarations[outer.declaration as usize];
+        let declaration = module.script.declarations.whole(outer.declaration as usize);
         let is_root = match outer.expr {
             None => true,
             Some(expr) => matches!(&declaration.kind, DeclarationKind::Value { value, .. } if *value == expr),
@@ -33,7 +33,7 @@ impl Say for Cx<'_> {
         {
             return format!("{}.faces[{face}]", self.program.names.text(bound.name));
         }
-        if is_root && let Some(b) = bound(declaration) {
+        if is_root && let Some(b) = bound(&declaration) {
             return member_name(self.program.names.text(b.name), outer.member);
         }
         let text =
@@ -78,13 +78,13 @@ impl Cx<'_> {
     pub fn span_of(&self, origin: Origin) -> Option<(FileId, Span)> {
         let place = self.program.origins.place(origin)?;
         let module = self.machine.at(place.module);
-        let declaration = &module.script.declarations[place.declaration as usize];
+        let declaration = module.script.declarations.whole(place.declaration as usize);
         let span = match place.expr {
             Some(ExprId(u32::MAX)) => declaration.span,
             Some(expr) => declaration.nodes.get(expr.index())?.span,
             None => match &declaration.kind {
                 DeclarationKind::Value { value, .. } => declaration.nodes.get(value.index())?.span,
-                _ => bound(declaration).map_or(declaration.span, |b| b.span),
+                _ => bound(&declaration).map_or(declaration.span, |b| b.span),
             },
         };
         Some((module.file, span))
@@ -101,8 +101,8 @@ impl Cx<'_> {
         let site = self.machine.site;
         match self.machine.modules.get(site.module.index()) {
             Some(module) if (site.declaration as usize) < module.script.declarations.len() => {
-                let nodes = &module.script.declarations[site.declaration as usize].nodes;
-                let code = Code { nodes, module: site.module, declaration: site.declaration };
+                let declaration = module.script.declarations.whole(site.declaration as usize);
+                let code = Code { nodes: &declaration.nodes, module: site.module, declaration: site.declaration };
                 self.locate(fault, code, self.machine_span(code), &Blame::default())
             }
             _ => {
@@ -128,7 +128,7 @@ impl Cx<'_> {
             Subject::Call => Some((file, span)),
         };
         let mut diagnostic = Diagnostic::from_fault(fault, find, self);
-        let inside = self.machine.at(code.module).script.declarations[code.declaration as usize].span;
+        let inside = self.machine.at(code.module).script.declarations.span(code.declaration as usize);
         let shown = |l: &Label| l.file == file && l.span.start >= inside.start && l.span.end <= inside.end;
         if !diagnostic.labels.iter().any(shown) {
             diagnostic.labels.push(Label { file, span, text: "asked for here".to_owned() });
@@ -140,10 +140,9 @@ impl Cx<'_> {
     /// The name of a declaration, or its source when it binds none.
     pub(crate) fn declaration_name(&self, module: ModuleId, index: u32) -> String {
         let m = self.machine.at(module);
-        let declaration = &m.script.declarations[index as usize];
-        let name = match bound(declaration) {
+        let name = match m.script.declarations.bound(index as usize) {
             Some(b) => self.program.names.text(b.name).to_owned(),
-            None => self.program.sources.text(m.file, declaration.span).lines().next().unwrap_or("").to_owned(),
+            None => self.program.sources.text(m.file, m.script.declarations.span(index as usize)).lines().next().unwrap_or("").to_owned(),
         };
         if m.label.is_empty() { name } else { format!("{}.{name}", m.label) }
     }

@@ -13,7 +13,6 @@ use crate::lang::eval::faults::member_name;
 use crate::lang::eval::machine::Code;
 use crate::lang::eval::module::State;
 use crate::lang::syntax::ast::{Expr, ExprId};
-use crate::lang::syntax::scopes::bound;
 use crate::lang::values::origins::NO_MEMBER;
 use crate::lang::values::value::{ModuleId, Value};
 use crate::network::Chain;
@@ -133,8 +132,8 @@ impl Cx<'_> {
     /// Goes over what a script declares and has evaluated, in order, members of families one by one.
     fn each_declared(&self, module: ModuleId, each: &mut dyn FnMut(String, &Value)) {
         let module = self.machine.at(module);
-        for (declaration, state) in module.script.declarations.iter().zip(&module.states) {
-            let (Some(b), State::Done(value)) = (bound(declaration), state) else { continue };
+        for (at, state) in module.states.iter().enumerate() {
+            let (Some(b), State::Done(value)) = (module.script.declarations.bound(at), state) else { continue };
             let name = self.program.names.text(b.name);
             match value {
                 Value::List(items) => {

@@ -64,7 +64,7 @@ impl Cx<'_> {
             return Halt::Broken;
         }
         if let Some(declaration) = self.machine.at(code.module).find(name) {
-            let word = match self.machine.at(code.module).script.declarations[declaration as usize].keyword {
+            let word = match self.machine.at(code.module).script.declarations.keyword(declaration as usize) {
                 Keyword::Let => "value",
                 keyword => keyword_word(keyword),
             };
@@ -114,8 +114,8 @@ impl Cx<'_> {
     /// What may have been meant by calling a thing: its settings in braces, or a member of it.
     fn not_called(&self, code: Code<'_>, id: ExprId, text: &str) -> Vec<String> {
         let Expr::Call { args, .. } = code.expr(id) else { return Vec::new() };
-        let declaration = &self.machine.at(code.module).script.declarations[code.declaration as usize];
-        let takes = matches!(declaration.keyword, Keyword::Mesh | Keyword::Shell | Keyword::Export | Keyword::Picture);
+        let keyword = self.machine.at(code.module).script.declarations.keyword(code.declaration as usize);
+        let takes = matches!(keyword, Keyword::Mesh | Keyword::Shell | Keyword::Export | Keyword::Picture);
         let setting = |a: &Arg| a.name.map(|(name, _)| format!("{}: {}", self.program.names.text(name), self.source(code, a.value)));
         let settings: Vec<String> = args.iter().filter_map(setting).collect();
         match args.as_slice() {

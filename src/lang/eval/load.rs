@@ -18,8 +18,8 @@ use crate::lang::values::value::{ModuleId, Value};
 impl Cx<'_> {
     /// Adds a script as a module: parsed, its units known, its names bound once. `place` is the module that it stands for anew.
     pub(crate) fn add_module(&mut self, name: &str, path: &str, text: Arc<str>, label: String, place: Option<ModuleId>) -> ModuleId {
-        let file = self.program.sources.add(name, &*text);
-        let (script, mistakes) = crate::lang::syntax::parse(&text, file, &mut self.program.names);
+        let file = self.program.sources.add(name, Arc::clone(&text));
+        let (script, mistakes) = crate::lang::syntax::parse_shared(&text, file, &mut self.program.names);
         self.machine.filed.extend(mistakes.into_iter().map(|d| (None, d)));
         let (module, twice) = Module::new(file, path.into(), Arc::new(script), self.program.names.len());
         let id = place.unwrap_or_else(|| ModuleId::at(self.machine.modules.len()));
@@ -32,7 +32,7 @@ impl Cx<'_> {
         self.set_unit(id);
         let script = self.machine.at(id).script.clone();
         for (first, second) in twice {
-            let bound = |i: u32| crate::lang::syntax::scopes::bound(&script.declarations[i as usize]);
+            let bound = |i: u32| script.declarations.bound(i as usize);
             let (Some(a), Some(b)) = (bound(first), bound(second)) else { continue };
             let text = self.program.names.text(b.name);
             let diagnostic = Diagnostic::new("E202", format!("`{text}` is defined twice"), file, b.span, "again here")
@@ -49,8 +49,8 @@ impl Cx<'_> {
         let script = self.machine.at(id).script.clone();
         let file = self.machine.at(id).file;
         let mut found: Option<Bound> = None;
-        for (i, declaration) in script.declarations.iter().enumerate() {
-            let DeclarationKind::Units(bound) = &declaration.kind else { continue };
+        for i in script.declarations.with_keyword(Keyword::Units) {
+            let DeclarationKind::Units(bound) = script.declarations.whole(i).kind else { continue };
             let owner = Some((id, i as u32));
             let text = self.program.names.text(bound.name).to_owned();
             if let Some(first) = found {
@@ -62,7 +62,7 @@ impl Cx<'_> {
                 self.machine.filed.push((owner, diagnostic));
                 continue;
             }
-            found = Some(*bound);
+            found = Some(bound);
             match units::length_unit(&text) {
                 Some(unit) => self.machine.at_mut(id).unit = unit,
                 None => {
@@ -180,7 +180,7 @@ impl Cx<'_> {
     /// The declarations of a script with this keyword.
     pub(crate) fn heads(&self, module: ModuleId, keyword: Keyword) -> Vec<u32> {
         let declarations = &self.machine.at(module).script.declarations;
-        declarations.iter().enumerate().filter(|(_, d)| d.keyword == keyword).map(|(i, _)| i as u32).collect()
+        declarations.with_keyword(keyword).map(|i| i as u32).collect()
     }
 }
 

@@ -283,7 +283,7 @@ impl Cx<'_> {
     pub(crate) fn machine_span(&self, code: Code<'_>) -> Span {
         match code.nodes.get(self.machine.site.expr.index()) {
             Some(node) => node.span,
-            None => self.machine.at(code.module).script.declarations[code.declaration as usize].span,
+            None => self.machine.at(code.module).script.declarations.span(code.declaration as usize),
         }
     }
 }

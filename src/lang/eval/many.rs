@@ -9,7 +9,7 @@ impl Cx<'_> {
     /// For `curve a = [for k in list: one]` the family `curve a for k in list = one`, for any other list `let a = …`, with the
     /// place of the declaration and its short form for a message; `None` where the list is not the value of a whole declaration.
     pub(crate) fn as_many(&self, code: Code<'_>, id: ExprId) -> Option<(Span, String, String)> {
-        let declaration = &self.machine.at(code.module).script.declarations[code.declaration as usize];
+        let declaration = self.machine.at(code.module).script.declarations.whole(code.declaration as usize);
         let DeclarationKind::Value { bound, family, value } = &declaration.kind else { return None };
         if *value != id || !family.is_empty() {
             return None;

@@ -192,6 +192,26 @@ pub(crate) fn attached(said: &[Diagnostic], file: FileId, start: u32) -> Vec<Dia
     said.iter().map(|d| d.moved(moved)).collect()
 }
 
+/// What is kept of the [`Dependencies`] of each declaration.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct AskedFlags {
+    world: bool,
+    fleeting: bool,
+    pub numbered: bool,
+}
+
+impl From<Dependencies> for AskedFlags {
+    fn from(of: Dependencies) -> Self {
+        Self { world: of.world, fleeting: of.fleeting, numbered: of.numbered }
+    }
+}
+
+impl From<AskedFlags> for Dependencies {
+    fn from(of: AskedFlags) -> Self {
+        Self { world: of.world, fleeting: of.fleeting, numbered: of.numbered, ..Self::default() }
+    }
+}
+
 /// What an evaluation asked for beside the values of other declarations.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Dependencies {

@@ -12,7 +12,6 @@ use crate::lang::eval::context::Cx;
 use crate::lang::eval::later::keyword_word;
 use crate::lang::eval::std;
 use crate::lang::syntax::ast::Keyword;
-use crate::lang::syntax::scopes::bound;
 use crate::lang::values::value::ModuleId;
 use crate::lang::words::elsewhere::meant;
 use crate::lang::words::lookalikes;
@@ -107,16 +106,21 @@ impl Cx<'_> {
     /// The nearest name, and the number of those compared.
     fn near_name(&self, unknown: &Unknown) -> (Near, usize) {
         let (m, text) = (self.machine.at(unknown.of), self.program.names.text(unknown.name));
-        let declared = m.script.declarations.iter();
+        let script = &m.script.declarations;
+        let bound = |functions: bool| {
+            (0..script.len())
+                .filter(move |at| (script.keyword(*at) == Keyword::Fn) == functions)
+                .filter_map(|at| Some((at, script.bound(at)?)))
+        };
         let named = |names: &[&str]| (meant(text, names.iter().copied()).map(|near| (near.to_owned(), None)), names.len());
         match &unknown.among {
             Among::Members => named(&m.names().map(|n| self.program.names.text(n)).collect::<Vec<_>>()),
             Among::Functions => {
-                let own = declared.filter(|d| d.keyword == Keyword::Fn).filter_map(bound).map(|b| self.program.names.text(b.name));
+                let own = bound(true).map(|(_, b)| self.program.names.text(b.name));
                 named(&std::builtins().chain(std::fields()).map(|b| b.name).chain(own).collect::<Vec<_>>())
             }
             Among::Values(locals) => {
-                let values = declared.filter(|d| d.keyword != Keyword::Fn).filter_map(|d| bound(d).map(|b| (d, b)));
+                let values = bound(false);
                 let words = ["true", "false", "none", "pi"].into_iter().filter(|w| w.eq_ignore_ascii_case(text));
                 let names = words.chain(locals.iter().map(|n| self.program.names.text(*n)));
                 let mut names: Vec<&str> = names.collect();
@@ -124,7 +128,7 @@ impl Cx<'_> {
                 let near = nearest(text, names.iter().copied()).map(|near| {
                     let mut places = values.filter(|v| self.program.names.text(v.1.name) == near);
                     let line = |at: u32| self.program.sources.place(m.file, at).map_or(1, |p| p.line);
-                    (near.to_owned(), places.next().map(|(d, b)| (keyword_word(d.keyword), line(b.span.start))))
+                    (near.to_owned(), places.next().map(|(at, b)| (keyword_word(script.keyword(at)), line(b.span.start))))
                 });
                 (near, names.len())
             }

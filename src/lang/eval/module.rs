@@ -6,10 +6,9 @@ use std::sync::Arc;
 use crate::base::digest::Digest;
 use crate::lang::diag::diagnostic::FileId;
 use crate::lang::diag::span::Span;
-use crate::lang::eval::memory::{Dependencies, Keys};
+use crate::lang::eval::memory::{AskedFlags, Dependencies, Keys};
 use crate::lang::eval::pipeline::{Parts, Sound};
-use crate::lang::syntax::ast::{Allowed, Declaration, DeclarationKind, Expr, Script};
-use crate::lang::syntax::scopes::bound;
+use crate::lang::syntax::ast::{Allowed, Declaration, DeclarationKind, Expr, ExprId, Keyword, Script};
 use crate::lang::values::plans::{CheckResult, ExportSpec, MeshSpec, PictureSpec, ReportTable};
 use crate::lang::values::units::LengthUnit;
 use crate::lang::values::value::{ModuleId, Value};
@@ -108,7 +107,7 @@ pub(crate) struct Module {
     /// Keys of the declarations, made when first asked for.
     pub keys: Option<Keys>,
     /// What each declaration asked for beside values.
-    pub asked: Vec<Dependencies>,
+    pub asked: Vec<AskedFlags>,
     /// Declarations whose patches and edges are numbered otherwise where geometry is made from them: as they are there.
     pub within: BTreeMap<u32, (State, Dependencies)>,
     pub parts: Stage<Arc<Parts>>,
@@ -135,8 +134,8 @@ impl Module {
         let mut by_name = vec![0; n_names];
         let mut states = vec![State::Waiting; script.declarations.len()];
         let mut twice = Vec::new();
-        for (i, declaration) in script.declarations.iter().enumerate() {
-            let Some(bound) = bound(declaration) else { continue };
+        for i in 0..script.declarations.len() {
+            let Some(bound) = script.declarations.bound(i) else { continue };
             let slot: &mut u32 = &mut by_name[bound.name.index()];
             if *slot == 0 {
                 *slot = i as u32 + 1;
@@ -147,7 +146,8 @@ impl Module {
         }
         let mut broken: Vec<Name> = script.broken.iter().map(|b| b.name).collect();
         broken.sort_unstable();
-        let mut choices: Vec<Name> = script.declarations.iter().flat_map(choices).collect();
+        let mut choices: Vec<Name> =
+            script.declarations.with_keyword(Keyword::Param).flat_map(|at| choices(&script.declarations.whole(at))).collect();
         choices.sort_unstable();
         let module = Self {
             file,
@@ -160,7 +160,7 @@ impl Module {
             broken,
             choices,
             entered: vec![0; states.len()],
-            asked: vec![Dependencies::default(); states.len()],
+            asked: vec![AskedFlags::default(); states.len()],
             within: BTreeMap::new(),
             states,
             given: Vec::new(),
@@ -199,18 +199,19 @@ impl Module {
 
     /// All names bound here.
     pub fn names(&self) -> impl Iterator<Item = Name> + '_ {
-        self.script.declarations.iter().filter_map(|d| bound(d).map(|b| b.name))
+        (0..self.script.declarations.len()).filter_map(|at| self.script.declarations.bound(at).map(|b| b.name))
     }
 }
 
 /// The words that a param lists as its choices.
-fn choices(declaration: &Declaration) -> impl Iterator<Item = Name> + '_ {
+fn choices(declaration: &Declaration) -> Vec<Name> {
     let items = match &declaration.kind {
         DeclarationKind::Param { allowed: Some(Allowed::Choices(items)), .. } => items.as_slice(),
         _ => &[],
     };
-    items.iter().filter_map(|i| match declaration.nodes[i.index()].expr {
+    let word = |id: &ExprId| match declaration.nodes[id.index()].expr {
         Expr::Name(name) => Some(name),
         _ => None,
-    })
+    };
+    items.iter().filter_map(word).collect()
 }

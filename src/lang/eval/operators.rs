@@ -280,7 +280,7 @@ impl Cx<'_> {
         }
         let Expr::Name(name) = code.expr(id) else { return None };
         let module = self.machine.at(code.module);
-        let declaration = &module.script.declarations[module.find(*name)? as usize];
+        let declaration = module.script.declarations.whole(module.find(*name)? as usize);
         match &declaration.kind {
             crate::lang::syntax::ast::DeclarationKind::Value { value, .. } if is_sum(&declaration.nodes, *value) => {
                 let span = declaration.nodes[value.index()].span;

@@ -14,7 +14,6 @@ use crate::lang::eval::halt::Halt;
 use crate::lang::eval::module::State;
 use crate::lang::eval::stages;
 use crate::lang::syntax::ast::Keyword;
-use crate::lang::syntax::scopes::bound;
 use crate::lang::values::value::{EntityHome, ModuleId, ShellValue, Value};
 use crate::model::topology::Named;
 use crate::model::{Model, SharedEdge, Shell, ShellRequest, SurfaceId};
@@ -161,16 +160,16 @@ impl Cx<'_> {
     fn place_in_let(&self, surface: &Surface) -> Option<String> {
         let place = self.outermost(self.program.origins.place(surface.origin())?);
         let module = self.machine.at(place.module);
-        let declaration = module.script.declarations.get(place.declaration as usize)?;
-        let State::Done(value) = &module.states[place.declaration as usize] else { return None };
-        if declaration.keyword != Keyword::Let {
+        let (at, declarations) = (place.declaration as usize, &module.script.declarations);
+        let State::Done(value) = module.states.get(at)? else { return None };
+        if declarations.keyword(at) != Keyword::Let {
             return None;
         }
         let found = std::iter::once(surface).chain(surface.part_of()).find_map(|one| {
             let same = path_of(value, &|other| other.is(one));
             same.or_else(|| path_of(value, &|other| side_of(other, one).is_some()))
         });
-        Some(format!("{}{}", self.program.names.text(bound(declaration)?.name), found?))
+        Some(format!("{}{}", self.program.names.text(declarations.bound(at)?.name), found?))
     }
 }
 

@@ -14,8 +14,7 @@ use crate::lang::eval::halt::Halt;
 use crate::lang::eval::machine::Code;
 use crate::lang::eval::module::{Module, Stage, State};
 use crate::lang::eval::pipeline::{Declared, Parts, Sound};
-use crate::lang::syntax::ast::{DeclarationKind, Keyword};
-use crate::lang::syntax::scopes::bound;
+use crate::lang::syntax::ast::Keyword;
 use crate::lang::values::origins::NO_MEMBER;
 use crate::lang::values::value::{MeshValue, ModuleId, ShellValue, Value};
 use crate::lang::words::names::Names;
@@ -36,8 +35,8 @@ fn all(cx: &mut Cx, module: ModuleId, keywords: &[Keyword]) -> Result<(), Halt> 
     let script = cx.machine.at(module).script.clone();
     cx.machine.stages += 1;
     let mut stop: Option<Halt> = None;
-    for (i, declaration) in script.declarations.iter().enumerate() {
-        if keywords.contains(&declaration.keyword)
+    for (i, keyword) in script.declarations.keywords().enumerate() {
+        if keywords.contains(&keyword)
             && let Err(found) = cx.ensure(module, i as u32)
         {
             stop = Some(match stop {
@@ -70,19 +69,18 @@ fn walk(value: &Value, levels: usize, member: [u32; 2], level: usize, out: &mut 
 
 /// Calls `out` for each evaluated member of each declaration with one of these keywords.
 pub(crate) fn each_member(module: &Module, names: &Names, keywords: &[Keyword], out: MemberVisitor<'_>) {
-    for (i, declaration) in module.script.declarations.iter().enumerate() {
-        if !keywords.contains(&declaration.keyword) {
+    let declarations = &module.script.declarations;
+    for (i, keyword) in declarations.keywords().enumerate() {
+        if !keywords.contains(&keyword) {
             continue;
         }
-        let (State::Done(value), Some(b)) = (&module.states[i], bound(declaration)) else { continue };
-        let levels = match &declaration.kind {
-            // A shell of a part with several bodies is one of each.
-            DeclarationKind::Collection { family, .. } if declaration.keyword == Keyword::Shell => family.len() + 1,
-            DeclarationKind::Value { family, .. } | DeclarationKind::Collection { family, .. } => family.len(),
-            _ => 0,
-        };
+        let (State::Done(value), Some(b)) = (&module.states[i], declarations.bound(i)) else { continue };
+        // A shell of a part with several bodies is one of each.
+        let levels = declarations.family_size(i) + usize::from(keyword == Keyword::Shell);
         walk(value, levels, [NO_MEMBER; 2], 0, &mut |member, value| {
-            out(i as u32, declaration.keyword, member, member_name(names.text(b.name), member).into(), value);
+            let name = names.text(b.name);
+            let name = if member == [NO_MEMBER; 2] { name.into() } else { member_name(name, member).into() };
+            out(i as u32, keyword, member, name, value);
         });
     }
 }
@@ -90,7 +88,9 @@ pub(crate) fn each_member(module: &Module, names: &Names, keywords: &[Keyword], 
 /// What is evaluated so far of a script's geometry.
 pub(crate) fn gather(cx: &mut Cx, module: ModuleId) -> Parts {
     let mut parts = Parts::default();
-    let mut points: Vec<Found<DVec3>> = Vec::new();
+    let declared = |keyword| cx.machine.at(module).script.declarations.with_keyword(keyword).count();
+    let mut points: Vec<Found<DVec3>> = Vec::with_capacity(declared(Keyword::Point));
+    parts.curves.reserve(declared(Keyword::Curve));
     each_member(cx.machine.at(module), &cx.program.names, GEOMETRY, &mut |i, keyword, member, name, value| match (keyword, value) {
         (Keyword::Point, Value::Vector(p, _)) => points.push((i, member, name, *p)),
         (Keyword::Curve, Value::Curve(c)) => parts.curves.push(Declared { name, origin: c.origin(), value: c.clone() }),
@@ -98,6 +98,7 @@ pub(crate) fn gather(cx: &mut Cx, module: ModuleId) -> Parts {
         (Keyword::Surface, Value::Surface(s)) => parts.surfaces.push(Declared { name, origin: s.origin(), value: s.clone() }),
         _ => {}
     });
+    parts.points.reserve_exact(points.len());
     for (declaration, member, name, value) in points {
         let origin = cx.own_origin(Code { nodes: &[], module, declaration }, member);
         parts.points.push(Declared { name, origin, value });

@@ -123,7 +123,7 @@ impl Cx<'_> {
         let args = args.iter().map(|a| (a.name.map(|(n, _)| self.program.names.text(n).to_owned()), self.source(code, a.value)));
         let made = shape(&Call { name: self.program.names.text(*name).to_owned(), args: args.collect() })?;
         if let Made::Solid { .. } = made {
-            let declaration = &self.machine.at(code.module).script.declarations[code.declaration as usize];
+            let declaration = self.machine.at(code.module).script.declarations.whole(code.declaration as usize);
             let DeclarationKind::Value { bound, family, value } = &declaration.kind else { return None };
             let whole = *value == id && family.is_empty();
             let span = Span { start: declaration.keyword_span.start, ..declaration.span };

@@ -10,7 +10,7 @@ use crate::lang::eval::memory::Keys;
 use crate::lang::eval::module::Given;
 use crate::lang::syntax;
 use crate::lang::syntax::ast::{Declaration, DeclarationKind, Expr, ExprId, Keyword, TextPart};
-use crate::lang::syntax::scopes::bound;
+use crate::lang::syntax::declarations::Declarations;
 use crate::lang::values::origins::Home;
 use crate::lang::values::value::{ModuleId, Value};
 use crate::lang::words::names::Name;
@@ -29,14 +29,15 @@ enum Lead {
 }
 
 /// The tokens of each declaration as a digest; comments, blanks and places do not matter.
-pub(crate) fn token_keys(text: &str, declarations: &[Declaration]) -> Vec<Digest> {
+pub(crate) fn token_keys(text: &str, declarations: &Declarations) -> Vec<Digest> {
     let tokens = syntax::token_spans(text);
-    let key = |d: &Declaration| {
-        let first = tokens.partition_point(|t| t.start < d.span.start);
-        let own = tokens[first..].iter().take_while(|t| t.end <= d.span.end);
+    let key = |at: usize| {
+        let span = declarations.span(at);
+        let first = tokens.partition_point(|t| t.start < span.start);
+        let own = tokens[first..].iter().take_while(|t| t.end <= span.end);
         own.fold(StableHasher::new("tokens"), |digester, t| digester.text(&text[t.start as usize..t.end as usize])).finish()
     };
-    declarations.iter().map(key).collect()
+    (0..declarations.len()).map(key).collect()
 }
 
 impl Cx<'_> {
@@ -44,7 +45,7 @@ impl Cx<'_> {
     pub(crate) fn settle_in(&mut self, module: ModuleId, label: &str) {
         let script = self.machine.at(module).script.clone();
         let Some(mut memory) = self.memory.take() else {
-            let homes: Vec<Home> = script.declarations.iter().map(|_| self.program.origins.new_home()).collect();
+            let homes: Vec<Home> = script.declarations.keywords().map(|_| self.program.origins.new_home()).collect();
             return self.program.origins.enter(module, homes);
         };
         memory.enter(module, label);
@@ -52,9 +53,9 @@ impl Cx<'_> {
         let text = self.program.sources.get(file).map_or("", |s| &s.text);
         let tokens = token_keys(text, &script.declarations);
         let mut nameless: BTreeMap<Digest, u64> = BTreeMap::new();
-        let homes = script.declarations.iter().zip(&tokens).map(|(declaration, tokens)| {
+        let homes = tokens.iter().enumerate().map(|(at, tokens)| {
             let identity = StableHasher::new("home").text(label);
-            let identity = match bound(declaration) {
+            let identity = match script.declarations.bound(at) {
                 Some(b) => identity.text(self.program.names.text(b.name)),
                 None => {
                     let nth = nameless.entry(*tokens).or_default();
@@ -98,7 +99,7 @@ impl Cx<'_> {
     pub(crate) fn joined_keys(&self, module: ModuleId, own: &[Option<Digest>], fixed: &[bool]) -> Keys {
         let script = self.machine.at(module).script.clone();
         let n = script.declarations.len();
-        let names = |i: usize| if fixed[i] { Vec::new() } else { self.leads(module, &script.declarations[i]) };
+        let names = |i: usize| if fixed[i] { Vec::new() } else { self.leads(module, &script.declarations.whole(i)) };
         let leads: Vec<Vec<Lead>> = (0..n).map(names).collect();
         let mut of: Vec<Option<Digest>> = vec![None; n];
         // 0: not met yet, 1: below on the stack, 2: done.
@@ -127,7 +128,7 @@ impl Cx<'_> {
                 met[at] = 2;
             }
         }
-        let world = script.declarations.iter().zip(&of).filter(|(d, _)| WORLD.contains(&d.keyword));
+        let world = script.declarations.keywords().zip(&of).filter(|(keyword, _)| WORLD.contains(keyword));
         let start = Some(StableHasher::new("world").number(script.broken.len() as u64));
         let world = world.fold(start, |all, (_, key)| Some(all?.digest((*key)?))).map(|d| d.finish());
         Keys { of: of.into(), world }
@@ -136,7 +137,7 @@ impl Cx<'_> {
     /// The digest of a declaration's text.
     pub(crate) fn text_key(&self, module: ModuleId, index: u32) -> Digest {
         let m = self.machine.at(module);
-        StableHasher::new("text").text(self.program.sources.text(m.file, m.script.declarations[index as usize].span)).finish()
+        StableHasher::new("text").text(self.program.sources.text(m.file, m.script.declarations.span(index as usize))).finish()
     }
 
     /// The key, or one with the text in it where what is kept under the key depends on another text.
@@ -154,7 +155,7 @@ impl Cx<'_> {
     fn own_key(&mut self, module: ModuleId, index: u32) -> Option<Digest> {
         let m = self.machine.at(module);
         let script = m.script.clone();
-        let declaration = &script.declarations[index as usize];
+        let declaration = script.declarations.whole(index as usize);
         let own = StableHasher::new(env!("CARGO_PKG_VERSION")).text(self.program.unit.name).text(m.unit.name).text(&m.label);
         let own = own.digest(*m.tokens.get(index as usize)?);
         Some(match &declaration.kind {
@@ -166,7 +167,7 @@ impl Cx<'_> {
             DeclarationKind::Load { path, .. } => {
                 let from = m.path.clone();
                 let is_script = declaration.keyword == Keyword::Use;
-                own.digest(self.file_key(&from, literal(declaration, *path)?, is_script, 0)?)
+                own.digest(self.file_key(&from, literal(&declaration, *path)?, is_script, 0)?)
             }
             _ => own,
         })
@@ -192,7 +193,7 @@ impl Cx<'_> {
             .try_fold(digester, |digester, declaration| match &declaration.kind {
                 DeclarationKind::Load { path, .. } => {
                     let is_script = declaration.keyword == Keyword::Use;
-                    Some(digester.digest(self.file_key(&resolved, literal(declaration, *path)?, is_script, depth + 1)?))
+                    Some(digester.digest(self.file_key(&resolved, literal(&declaration, *path)?, is_script, depth + 1)?))
                 }
                 _ => Some(digester),
             })
@@ -221,7 +222,7 @@ impl Cx<'_> {
         }
         let lead = |(name, any): (Name, bool)| match m.find(name) {
             // What is called is a function, whatever else has its name.
-            Some(found) if any || m.script.declarations[found as usize].keyword == Keyword::Fn => Lead::Declaration(found),
+            Some(found) if any || m.script.declarations.keyword(found as usize) == Keyword::Fn => Lead::Declaration(found),
             None if m.is_broken(name) => Lead::Broken,
             _ => Lead::Free,
         };

@@ -12,7 +12,7 @@ use crate::lang::values::value::ModuleId;
 impl Cx<'_> {
     /// What a declaration sees that is asked for now.
     pub(crate) fn sees(&self, module: ModuleId, index: u32) -> Sees {
-        let keyword = self.machine.at(module).script.declarations[index as usize].keyword;
+        let keyword = self.machine.at(module).script.declarations.keyword(index as usize);
         let can = matches!(keyword, Keyword::Let | Keyword::Group);
         if can && stages::is_within(self, module) { Sees::Own } else { Sees::All }
     }
@@ -20,7 +20,7 @@ impl Cx<'_> {
     /// Its state for who asks now, with what it asked for: waiting where it is only known, or being evaluated, for the whole script.
     pub(crate) fn seen_as(&self, module: ModuleId, index: u32, sees: Sees) -> (&State, Dependencies) {
         let m = self.machine.at(module);
-        let all = (&m.states[index as usize], m.asked[index as usize]);
+        let all = (&m.states[index as usize], Dependencies::from(m.asked[index as usize]));
         if sees == Sees::All {
             return all;
         }
@@ -52,7 +52,7 @@ impl Cx<'_> {
         let is_known = matches!(m.states[index as usize], State::Running | State::Done(_));
         let depends = asked.numbered && matches!(state, State::Done(_));
         if sees == Sees::All || !is_known && !depends {
-            (m.states[index as usize], m.asked[index as usize]) = (state, asked);
+            (m.states[index as usize], m.asked[index as usize]) = (state, asked.into());
         } else if !matches!(state, State::Suspended) {
             m.within.insert(index, (state, asked));
         }

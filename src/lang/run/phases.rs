@@ -15,7 +15,6 @@ use crate::lang::eval::module::{Stage, State};
 use crate::lang::eval::sink::SAID_JUST_NOW;
 use crate::lang::eval::stages;
 use crate::lang::syntax::ast::{DeclarationKind, ExprId, Keyword};
-use crate::lang::syntax::scopes::bound;
 use crate::lang::values::plans::{CheckResult, ExportSpec, PictureSpec, ReportTable};
 use crate::lang::values::types::Ty;
 use crate::lang::values::units;
@@ -33,7 +32,7 @@ pub struct Entry<'e> {
     /// Resolved path that its imports are beside.
     pub path: &'e str,
     /// Its text.
-    pub text: &'e str,
+    pub text: Arc<str>,
     /// Params set from outside: name and the text of a literal.
     pub sets: &'e [(String, String)],
     /// The row of a table of variants that sets some of them.
@@ -52,8 +51,8 @@ struct WrittenTolerance {
 
 impl Cx<'_> {
     /// Parses the main script. What is wrong with it is found in [`Cx::finish`].
-    pub fn load(&mut self, entry: &Entry) {
-        let main = self.add_module(entry.name, entry.path, entry.text.into(), String::new(), None);
+    pub fn load(&mut self, entry: Entry) {
+        let main = self.add_module(entry.name, entry.path, entry.text, String::new(), None);
         self.program.unit = self.machine.at(main).unit;
         self.give_all(main, entry.sets, entry.row);
     }
@@ -103,7 +102,7 @@ impl Cx<'_> {
         let script = self.machine.at(module).script.clone();
         let file = self.machine.at(module).file;
         for again in found.iter().skip(1) {
-            let (first, second) = (script.declarations[found[0] as usize].keyword_span, script.declarations[*again as usize].keyword_span);
+            let (first, second) = (script.declarations.keyword_span(found[0] as usize), script.declarations.keyword_span(*again as usize));
             let word = crate::lang::eval::later::keyword_word(keyword);
             let diagnostic = Diagnostic::new("E202", format!("`{word}` may be declared only once"), file, second, "again here").label(
                 file,
@@ -118,7 +117,7 @@ impl Cx<'_> {
     /// Evaluates expressions of a head line outside any other declaration.
     pub(crate) fn head(&mut self, module: ModuleId, index: u32, values: &[(ExprId, Ty, &str)]) -> Option<Vec<Value>> {
         let script = self.machine.at(module).script.clone();
-        let declaration = &script.declarations[index as usize];
+        let declaration = script.declarations.whole(index as usize);
         let code = Code { nodes: &declaration.nodes, module, declaration: index };
         self.machine.site.module = module;
         self.machine.site.declaration = index;
@@ -148,12 +147,12 @@ impl Cx<'_> {
     fn said_tolerance(&mut self) -> Option<WrittenTolerance> {
         let index = self.single(ModuleId::MAIN, Keyword::Tolerance)?;
         let script = self.machine.at(ModuleId::MAIN).script.clone();
-        let DeclarationKind::Tolerance(exprs) = &script.declarations[index as usize].kind else { return None };
+        let declaration = script.declarations.whole(index as usize);
+        let DeclarationKind::Tolerance(exprs) = &declaration.kind else { return None };
         let wanted = [(Ty::Quantity(Dim::LENGTH), "the tolerance"), (Ty::Quantity(Dim::ANGLE), "the angle of kinks")];
         let values: Vec<(ExprId, Ty, &str)> = exprs.iter().zip(wanted).map(|(e, (ty, s))| (*e, ty, s)).collect();
         if let Some(extra) = exprs.get(2) {
-            let nodes = &script.declarations[index as usize].nodes;
-            let code = Code { nodes, module: ModuleId::MAIN, declaration: index };
+            let code = Code { nodes: &declaration.nodes, module: ModuleId::MAIN, declaration: index };
             self.error(code, "E302", "a tolerance is a length and an angle", code.span(*extra), "one too many").say();
         }
         let values = self.head(ModuleId::MAIN, index, &values)?;
@@ -179,7 +178,8 @@ impl Cx<'_> {
         if least > point && least.is_finite() {
             let (shown, found) = (self.length(least), self.length(point));
             let script = self.machine.at(ModuleId::MAIN).script.clone();
-            let code = Code { nodes: &script.declarations[index as usize].nodes, module: ModuleId::MAIN, declaration: index };
+            let declaration = script.declarations.whole(index as usize);
+            let code = Code { nodes: &declaration.nodes, module: ModuleId::MAIN, declaration: index };
             let text = format!("the tolerance must be at least {shown}, got {found}");
             let (size, reaches) = if is_far { (furthest, "from the origin") } else { (diagonal, "across") };
             let why = format!("the model is {} {reaches}, and rounding moves its points by up to 1e-14 of that", self.length(size));
@@ -224,13 +224,12 @@ impl Cx<'_> {
     fn idle_tolerances(&mut self) {
         for m in 1..self.machine.modules.len() {
             let script = self.machine.modules[m].script.clone();
-            for (index, declaration) in script.declarations.iter().enumerate() {
-                if declaration.keyword == Keyword::Tolerance {
-                    let code = Code { nodes: &declaration.nodes, module: ModuleId::at(m), declaration: index as u32 };
-                    let point = self.tolerance.map_or(0.0, |t| t.point);
-                    let text = format!("the tolerance of this module has no effect: the main script's, {}, applies", self.length(point));
-                    self.error(code, "W222", text, declaration.span, "applies only where this script is run itself").say();
-                }
+            for index in script.declarations.with_keyword(Keyword::Tolerance) {
+                let declaration = script.declarations.whole(index);
+                let code = Code { nodes: &declaration.nodes, module: ModuleId::at(m), declaration: index as u32 };
+                let point = self.tolerance.map_or(0.0, |t| t.point);
+                let text = format!("the tolerance of this module has no effect: the main script's, {}, applies", self.length(point));
+                self.error(code, "W222", text, declaration.span, "applies only where this script is run itself").say();
             }
         }
         let said = std::mem::take(&mut self.sink.reports);
@@ -284,7 +283,7 @@ impl Cx<'_> {
 
     /// "nothing that depends on `SE` was built: south, east, roof (2 curves, 1 surface, 1 mesh)".
     fn not_built(&self, owner: (ModuleId, u32), members: &[(ModuleId, u32)]) -> String {
-        let named = |(m, d): &&(ModuleId, u32)| bound(&self.machine.at(*m).script.declarations[*d as usize]).is_some();
+        let named = |(m, d): &&(ModuleId, u32)| self.machine.at(*m).script.declarations.bound(*d as usize).is_some();
         let names: Vec<String> = members.iter().filter(named).take(NAMES_LISTED + 1).map(|(m, d)| self.declaration_name(*m, *d)).collect();
         let list = match names.len() {
             0 => String::new(),

@@ -1,5 +1,7 @@
 //! What a script declares, as tools show it: names, places, states, dependencies, and a line about each value.
 
+use std::sync::Arc;
+
 use crate::lang::assist::KnownType;
 use crate::lang::diag::diagnostic::FileId;
 use crate::lang::diag::span::Span;
@@ -60,8 +62,8 @@ impl Cx<'_> {
     /// The declarations of the main script that parsed, in order of writing.
     pub fn symbols(&self) -> Vec<Symbol> {
         let Some(module) = self.machine.modules.first() else { return Vec::new() };
-        let symbol = |(declaration, state): (&crate::lang::syntax::ast::Declaration, &State)| {
-            let bound = bound(declaration);
+        let symbol = |(declaration, state): (Arc<crate::lang::syntax::ast::Declaration>, &State)| {
+            let bound = bound(&declaration);
             Symbol {
                 name: bound.map(|b| self.program.names.text(b.name).to_owned()),
                 keyword: declaration.keyword,
@@ -75,7 +77,7 @@ impl Cx<'_> {
                     _ => Condition::Skipped,
                 },
                 shape: if let State::Done(value) = state { KnownType::of_value(value, &self.program.names) } else { KnownType::Unknown },
-                needs: self.needs(ModuleId::MAIN, declaration),
+                needs: self.needs(ModuleId::MAIN, &declaration),
             }
         };
         module.script.declarations.iter().zip(&module.states).map(symbol).collect()
@@ -88,7 +90,7 @@ impl Cx<'_> {
         let value = self.value_of(name)?;
         let module = self.machine.modules.first()?;
         let index = module.find(self.program.names.find(name)?)?;
-        let word = crate::lang::eval::later::keyword_word(module.script.declarations[index as usize].keyword);
+        let word = crate::lang::eval::later::keyword_word(module.script.declarations.keyword(index as usize));
         let about = self.describe(&value);
         Some(if about.is_empty() { format!("{word} {name}") } else { format!("{word} {name}: {about}") })
     }

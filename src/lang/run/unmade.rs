@@ -4,7 +4,6 @@ use crate::lang::diag::diagnostic::FileId;
 use crate::lang::diag::span::Span;
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::module::{Stage, State};
-use crate::lang::syntax::scopes::bound;
 use crate::lang::values::value::ModuleId;
 
 /// Something that was not made.
@@ -45,7 +44,8 @@ impl Cx<'_> {
                 let name = self.program.names.text(broken.name).to_owned();
                 here.push(Unmade { name, what: String::new(), file: module.file, span: broken.span, why: Why::Failed });
             }
-            for (i, (declaration, state)) in module.script.declarations.iter().zip(&module.states).enumerate() {
+            let declarations = &module.script.declarations;
+            for (i, state) in module.states.iter().enumerate() {
                 let why = match state {
                     State::Failed if module.checks.iter().any(|check| check.0 == i as u32) => continue,
                     State::Failed => Why::Failed,
@@ -53,10 +53,10 @@ impl Cx<'_> {
                     State::Broken => Why::Unread,
                     State::Waiting | State::Running | State::Suspended | State::Done(_) => continue,
                 };
-                let what = self.program.sources.text(module.file, declaration.keyword_span).to_owned();
+                let what = self.program.sources.text(module.file, declarations.keyword_span(i)).to_owned();
                 let name = self.declaration_name(own, i as u32);
-                let name = if bound(declaration).is_some() { name } else { unworded(&name, &what) };
-                here.push(Unmade { name, what, file: module.file, span: declaration.span, why });
+                let name = if declarations.bound(i).is_some() { name } else { unworded(&name, &what) };
+                here.push(Unmade { name, what, file: module.file, span: declarations.span(i), why });
             }
             for (spec, stage) in module.meshes.iter().zip(&module.mesh_stages) {
                 let why = match stage {

@@ -1,6 +1,7 @@
 //! The tree of a script: one small arena per declaration.
 
 use crate::lang::diag::span::Span;
+use crate::lang::syntax::declarations::Declarations;
 use crate::lang::words::names::Name;
 
 crate::ids! {
@@ -381,10 +382,10 @@ pub struct Declaration {
 }
 
 /// A parsed file.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default)]
 pub struct Script {
     /// The declarations that parsed, in order of writing.
-    pub declarations: Vec<Declaration>,
+    pub declarations: Declarations,
     /// Names that broken declarations would have bound: what uses them is skipped without a message.
     pub broken: Vec<Bound>,
 }

@@ -137,7 +137,7 @@ fn mutated() -> impl Strategy<Value = String> {
 
 fn spans_lie_in(text: &str, script: &Script, found: &[Diagnostic]) {
     let lies = |span: Span| text.get(span.start as usize..span.end as usize).is_some();
-    for declaration in &script.declarations {
+    for declaration in script.declarations.iter() {
         assert!(lies(declaration.span) && lies(declaration.keyword_span));
         for node in &declaration.nodes {
             assert!(lies(node.span) && node.span.start < node.span.end, "{node:?}");
@@ -149,7 +149,8 @@ fn spans_lie_in(text: &str, script: &Script, found: &[Diagnostic]) {
         assert!(lies(label.span), "{label:?}");
     }
     let sorted = found.windows(2).all(|w| w[0].place() <= w[1].place());
-    assert!(sorted && script.declarations.windows(2).all(|w| w[0].span.end <= w[1].span.start));
+    let spans: Vec<Span> = (0..script.declarations.len()).map(|at| script.declarations.span(at)).collect();
+    assert!(sorted && spans.windows(2).all(|w| w[0].end <= w[1].start));
 }
 
 /// A declaration with all its places moved.
@@ -173,7 +174,7 @@ fn shapes_change_nothing(text: &str, script: &Script, names: &mut Names) {
         let (single, found) = parse(&alone, FileId(0), names);
         assert!(found.iter().all(|d| d.severity() != crate::base::fault::Severity::Error), "{found:?}");
         assert_eq!(single.declarations.len(), 1);
-        assert_eq!(debug_of(&single.declarations[0], names), debug_of(declaration, names));
+        assert_eq!(debug_of(&single.declarations.whole(0), names), debug_of(&declaration, names));
     }
 }
 
@@ -277,9 +278,9 @@ fn sound_expressions_parse_and_repeat() {
             let (script, found) = parse(&text, FileId(0), &mut Names::default());
             prop_assert!(found.iter().all(|d| d.code.0 == "W220"), "{}\n{:?}", text, found);
             let half = script.declarations.len() / 2;
-            for (a, b) in script.declarations.iter().zip(&script.declarations[half..]) {
+            for (a, b) in script.declarations.iter().zip(script.declarations.iter().skip(half)) {
                 let tree = |d: &Declaration| d.nodes.iter().map(|n| format!("{:?}", std::mem::discriminant(&n.expr))).collect::<Vec<_>>();
-                prop_assert_eq!(tree(a), tree(b));
+                prop_assert_eq!(tree(&a), tree(&b));
             }
             check(&text)
         })
@@ -289,7 +290,7 @@ fn sound_expressions_parse_and_repeat() {
 #[test]
 fn children_come_before_parents() {
     let (script, _) = parse(TOUR, FileId(0), &mut Names::default());
-    for declaration in &script.declarations {
+    for declaration in script.declarations.iter() {
         for (index, node) in declaration.nodes.iter().enumerate() {
             let text = format!("{:?}", node.expr);
             let children = text.split("ExprId(").skip(1).filter_map(|rest| rest.split(')').next()?.parse().ok());

@@ -213,9 +213,32 @@ pub static WORDS: [KeywordDoc; 36] = [
     ),
 ];
 
+/// Where the words of each letter begin among all.
+static BY_LETTER: [u8; 27] = by_letter();
+
+const fn by_letter() -> [u8; 27] {
+    let mut from = [WORDS.len() as u8; 27];
+    let mut word = WORDS.len();
+    while word > 0 {
+        word -= 1;
+        from[(WORDS[word].word.as_bytes()[0] - b'a') as usize] = word as u8;
+    }
+    // A letter without words ends where the next one begins.
+    let mut letter = 26;
+    while letter > 0 {
+        letter -= 1;
+        if from[letter] as usize == WORDS.len() {
+            from[letter] = from[letter + 1];
+        }
+    }
+    from
+}
+
 /// The entry of a word.
 pub fn find(word: &str) -> Option<&'static KeywordDoc> {
-    WORDS.binary_search_by(|w| w.word.cmp(word)).ok().map(|i| &WORDS[i])
+    let letter = usize::from(word.as_bytes().first()?.checked_sub(b'a')?);
+    let (from, to) = (*BY_LETTER.get(letter)?, *BY_LETTER.get(letter + 1)?);
+    WORDS[usize::from(from)..usize::from(to)].iter().find(|w| w.word == word)
 }
 
 /// Words that open a declaration, in the order of [`Keyword`].

@@ -9,6 +9,7 @@
 
 pub mod ast;
 pub mod climb;
+pub mod declarations;
 pub mod expected;
 pub mod expected_words;
 pub mod fixes;
@@ -28,7 +29,7 @@ pub mod tree;
 pub mod tree_expressions;
 
 use std::ops::Range;
-use std::rc::Rc;
+use std::sync::Arc;
 
 use pest::Parser as _;
 
@@ -39,7 +40,7 @@ use crate::lang::syntax::ast::{Bound, Script};
 use crate::lang::syntax::matching::Marks;
 use crate::lang::syntax::mistake::Mistake;
 pub(crate) use crate::lang::syntax::scan::{Tokens, scan};
-use crate::lang::syntax::shape::{Filler, Shape, Shapes};
+use crate::lang::syntax::shape::{Filler, KnownShape, NameSource, Places, Shape, Shapes};
 use crate::lang::syntax::split::Piece;
 pub(crate) use crate::lang::syntax::split::split;
 pub(crate) use crate::lang::syntax::token::Kind;
@@ -58,7 +59,15 @@ use grammar::{Grammar, Rule};
 ///
 /// The reports are sorted by place. The tree refers to `names`, where new names are entered.
 pub fn parse(source: &str, file: FileId, names: &mut Names) -> (Script, Vec<Diagnostic>) {
-    let TokenizedScript { script, found, .. } = read_as(source, file, names, true);
+    let TokenizedScript { mut script, found, mut tokens, .. } = read_as(source, file, names, true);
+    script.declarations.complete(|| source.into(), &mut tokens);
+    (script, found)
+}
+
+/// [`parse`] of a text that the script may share.
+pub(crate) fn parse_shared(source: &Arc<str>, file: FileId, names: &mut Names) -> (Script, Vec<Diagnostic>) {
+    let TokenizedScript { mut script, found, mut tokens, .. } = read_as(source, file, names, true);
+    script.declarations.complete(|| Arc::clone(source), &mut tokens);
     (script, found)
 }
 
@@ -193,14 +202,16 @@ impl Parser<'_> {
         if piece.broken {
             return self.broken(base, end);
         }
-        if let Some(shape) = self.shapes.get(kinds) {
-            return self.declaration(base, &shape, doc);
+        if let Some(known) = self.shapes.get(kinds) {
+            return self.declaration(base, &known, doc);
         }
         match self.shape(base, end) {
             Ok(shape) => {
-                let shape = Rc::new(shape);
-                self.shapes.insert(kinds, &shape);
-                self.declaration(base, &shape, doc);
+                let shape = Arc::new(shape);
+                let shares = self.fills && shape.is_shared() && self.shapes.has_room(kinds);
+                let known = KnownShape { shared: shares.then(|| self.script.declarations.add_shape(&shape)), shape };
+                self.shapes.insert(kinds, &known);
+                self.declaration(base, &known, doc);
             }
             Err(diagnostic) => match self.second_let(base, end) {
                 Some(at) => {
@@ -215,17 +226,22 @@ impl Parser<'_> {
         }
     }
 
-    /// Fills a shape with the tokens from `base` on.
-    fn declaration(&mut self, base: usize, shape: &Shape, doc: Option<Box<str>>) {
+    /// Adds a declaration of a shape with the tokens from `base` on.
+    fn declaration(&mut self, base: usize, KnownShape { shape, shared }: &KnownShape, doc: Option<Box<str>>) {
         for &at in &shape.powers {
             let span = self.tokens.span(base + at as usize);
             let power = self.tokens.span(base + at as usize + 2);
             let mistake = Mistake::UnitPower { span, power };
             self.found.extend(mistake.is_meant_otherwise(self.source).then(|| mistake.diagnose(self.source, self.file)));
         }
-        if self.fills {
-            let declaration = Filler { source: self.source, tokens: self.tokens, base, names: self.names }.fill(shape, doc);
-            self.script.declarations.push(declaration);
+        match shared {
+            Some(shared) => self.script.declarations.add_shared(*shared, base, (self.source, self.tokens), self.names, doc),
+            None if self.fills => {
+                let places = Places::Read(self.tokens);
+                let declaration = Filler { source: self.source, places, base, names: NameSource::Text(&mut *self.names) }.fill(shape, doc);
+                self.script.declarations.add_whole(declaration);
+            }
+            None => {}
         }
         self.sound.push(base..base + shape.declaration.span.end as usize + 1);
     }

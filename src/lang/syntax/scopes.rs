@@ -38,11 +38,11 @@ pub struct Occurrence {
 pub fn occurrences(script: &Script) -> Vec<Occurrence> {
     // Of two declarations of a name the first one counts.
     let declared: BTreeMap<Name, usize> =
-        script.declarations.iter().enumerate().rev().filter_map(|(i, d)| Some((bound(d)?.name, i))).collect();
+        (0..script.declarations.len()).rev().filter_map(|i| Some((script.declarations.bound(i)?.name, i))).collect();
     let mut out = Vec::new();
     for (index, declaration) in script.declarations.iter().enumerate() {
-        let mut walker = Walker { declaration, index, declared: &declared, script, locals: Vec::new(), out: &mut out };
-        if let Some(b) = bound(declaration) {
+        let mut walker = Walker { declaration: &declaration, index, declared: &declared, script, locals: Vec::new(), out: &mut out };
+        if let Some(b) = bound(&declaration) {
             walker.out.push(Occurrence {
                 name: b.name,
                 span: b.span,
@@ -135,7 +135,7 @@ impl Walker<'_> {
         let local = self.locals.iter().rev().find(|l| l.0 == name).filter(|_| value);
         let declared = self.declared.get(&name).copied();
         // What is called is a function, whatever else has its name.
-        let fits = |d: &usize| value || matches!(self.script.declarations[*d].kind, DeclarationKind::Fn { .. });
+        let fits = |d: &usize| value || self.script.declarations.keyword(*d) == Keyword::Fn;
         let binding = match (local, declared.filter(fits)) {
             (Some(local), _) => Binding::Local(local.1),
             (None, Some(d)) => Binding::Declaration(d),

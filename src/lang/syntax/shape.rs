@@ -6,11 +6,13 @@
 
 use crate::lang::diag::span::Span;
 use std::collections::BTreeMap;
-use std::rc::Rc;
+use std::sync::Arc;
 
 use crate::lang::syntax::ast::*;
+use crate::lang::syntax::declarations::TokenPlaces;
 use crate::lang::syntax::number;
 use crate::lang::syntax::scan::Tokens;
+use crate::lang::syntax::scopes::bound;
 use crate::lang::syntax::token::Kind;
 use crate::lang::words::names::{Name, Names};
 
@@ -23,12 +25,56 @@ pub(crate) struct Shape {
     pub stretches: Vec<u32>,
     /// Quantities with `^` and a number behind them: `2m^2` may be meant as `2m2`.
     pub powers: Vec<u32>,
+    /// Tokens of the names, in the order in which they are read.
+    pub names: Vec<u32>,
+    /// Places in `names` of those that are used as values or called, in the order of nodes.
+    pub uses: Vec<u32>,
+    /// Place in `names` of the one that it binds.
+    pub bound: Option<u32>,
+}
+
+impl Shape {
+    /// A shape with its tree, the tokens of its strings, and of its powers.
+    pub fn new(declaration: Declaration, stretches: Vec<u32>, powers: Vec<u32>) -> Self {
+        let mut shape = Self { declaration, stretches, powers, names: Vec::new(), uses: Vec::new(), bound: None };
+        shape.find_names();
+        shape
+    }
+
+    /// Whether declarations of this shape are kept as what sets them apart: those that are looked at once. The body of a function is
+    /// looked at in each call.
+    pub fn is_shared(&self) -> bool {
+        matches!(self.declaration.kind, DeclarationKind::Value { .. })
+    }
+
+    fn find_names(&mut self) {
+        if !self.is_shared() {
+            return;
+        }
+        let mut names = Vec::new();
+        Filler { source: "", places: Places::None, base: 0, names: NameSource::Noted(&mut names) }.fill(self, None);
+        let place = |token: Name| names.iter().position(|name| *name == token.0).map(|place| place as u32);
+        let used = |node: &Node| match node.expr {
+            Expr::Name(name) | Expr::Call { name, .. } => place(name),
+            _ => None,
+        };
+        self.uses = self.declaration.nodes.iter().filter_map(used).collect();
+        self.bound = bound(&self.declaration).and_then(|b| place(b.name));
+        self.names = names;
+    }
+}
+
+/// A shape, and its place among those that a script shares.
+#[derive(Clone, Debug)]
+pub(crate) struct KnownShape {
+    pub shape: Arc<Shape>,
+    pub shared: Option<u32>,
 }
 
 /// Shapes met so far. Only short ones are kept: long ones hardly come twice.
 #[derive(Debug, Default)]
 pub(crate) struct Shapes {
-    known: BTreeMap<Box<[Kind]>, Rc<Shape>>,
+    known: BTreeMap<Box<[Kind]>, KnownShape>,
 }
 
 /// Most tokens of a shape that is kept.
@@ -38,14 +84,19 @@ const MOST: usize = 4096;
 
 impl Shapes {
     /// The shape of these kinds when it was met before.
-    pub fn get(&self, kinds: &[Kind]) -> Option<Rc<Shape>> {
+    pub fn get(&self, kinds: &[Kind]) -> Option<KnownShape> {
         if kinds.len() > LONGEST { None } else { self.known.get(kinds).cloned() }
     }
 
+    /// Whether a shape of these kinds is kept when it is found.
+    pub fn has_room(&self, kinds: &[Kind]) -> bool {
+        kinds.len() <= LONGEST && self.known.len() < MOST
+    }
+
     /// Keeps a shape.
-    pub fn insert(&mut self, kinds: &[Kind], shape: &Rc<Shape>) {
-        if kinds.len() <= LONGEST && self.known.len() < MOST {
-            self.known.insert(kinds.into(), Rc::clone(shape));
+    pub fn insert(&mut self, kinds: &[Kind], shape: &KnownShape) {
+        if self.has_room(kinds) {
+            self.known.insert(kinds.into(), shape.clone());
         }
     }
 }
@@ -53,10 +104,31 @@ impl Shapes {
 /// Fills a shape with the tokens of one declaration.
 pub(crate) struct Filler<'a> {
     pub source: &'a str,
-    pub tokens: &'a Tokens,
+    pub places: Places<'a>,
     /// Number of the declaration's first token.
     pub base: usize,
-    pub names: &'a mut Names,
+    pub names: NameSource<'a>,
+}
+
+/// Where a [`Filler`] has the places of tokens from.
+#[derive(Clone, Copy)]
+pub(crate) enum Places<'a> {
+    /// A file that was just read.
+    Read(&'a Tokens),
+    /// What a script keeps of it.
+    Kept(&'a TokenPlaces),
+    /// Nowhere.
+    None,
+}
+
+/// Where a [`Filler`] has the names from.
+pub(crate) enum NameSource<'a> {
+    /// The text, entered here.
+    Text(&'a mut Names),
+    /// A list, in the order in which they are read.
+    Listed(std::slice::Iter<'a, Name>),
+    /// Nowhere: the tokens that are asked for are noted, and texts and places are empty.
+    Noted(&'a mut Vec<u32>),
 }
 
 impl Filler<'_> {
@@ -75,18 +147,33 @@ impl Filler<'_> {
         }
     }
 
+    fn place(&self, first: u32, last: u32) -> Option<Span> {
+        let (first, last) = (self.base + first as usize, self.base + last as usize);
+        match self.places {
+            Places::Read(tokens) => Some(tokens.stretch(first, last)),
+            Places::Kept(places) => places.stretch(first, last),
+            Places::None => None,
+        }
+    }
+
     fn span(&self, tokens: Span) -> Span {
-        self.tokens.stretch(self.base + tokens.start as usize, self.base + tokens.end as usize)
+        self.place(tokens.start, tokens.end).unwrap_or_default()
     }
 
     fn text(&self, token: u32) -> &str {
-        let at = self.base + token as usize;
-        &self.source[self.tokens.starts[at] as usize..self.tokens.ends[at] as usize]
+        self.place(token, token).map_or("\"\"", |Span { start, end }| &self.source[start as usize..end as usize])
     }
 
     fn name(&mut self, token: Name) -> Name {
-        let at = self.base + token.0 as usize;
-        self.names.intern(&self.source[self.tokens.starts[at] as usize..self.tokens.ends[at] as usize])
+        let place = self.place(token.0, token.0).unwrap_or_default();
+        match &mut self.names {
+            NameSource::Text(names) => names.intern(&self.source[place.start as usize..place.end as usize]),
+            NameSource::Listed(listed) => listed.next().copied().unwrap_or(token),
+            NameSource::Noted(noted) => {
+                noted.push(token.0);
+                token
+            }
+        }
     }
 
     fn bound(&mut self, bound: Bound) -> Bound {

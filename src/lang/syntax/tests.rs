@@ -61,8 +61,8 @@ fn shown(declaration: &Declaration, id: ExprId, names: &Names) -> String {
 fn check(text: &str, tree: &str) {
     let (script, found, names) = parsed(&format!("let x = {text}\n"));
     assert!(found.is_empty(), "{text}: {found:?}");
-    let DeclarationKind::Value { value, .. } = script.declarations[0].kind else { panic!("no value") };
-    assert_eq!(shown(&script.declarations[0], value, &names), tree, "{text}");
+    let DeclarationKind::Value { value, .. } = script.declarations.whole(0).kind else { panic!("no value") };
+    assert_eq!(shown(&script.declarations.whole(0), value, &names), tree, "{text}");
 }
 
 #[test]
@@ -117,11 +117,11 @@ const TOUR: &str = include_str!("../../../tests/data/tour.loft");
 fn every_declaration_of_the_language_parses() {
     let (script, found, names) = parsed(TOUR);
     assert!(found.is_empty(), "{found:#?}");
-    let mut keywords: Vec<Keyword> = script.declarations.iter().map(|d| d.keyword).collect();
+    let mut keywords: Vec<Keyword> = script.declarations.keywords().collect();
     keywords.sort_unstable();
     keywords.dedup();
     assert_eq!(keywords.len(), 19);
-    for declaration in &script.declarations {
+    for declaration in script.declarations.iter() {
         let text = &TOUR[declaration.span.start as usize..declaration.span.end as usize];
         let keyword = &TOUR[declaration.keyword_span.start as usize..declaration.keyword_span.end as usize];
         let (first, last) = (keyword.split(' ').next().unwrap(), keyword.split(' ').next_back().unwrap());
@@ -155,8 +155,9 @@ fn a_known_shape_gives_the_same_tree() {
     let (first, _, _) = parsed(TOUR);
     let (second, found, _) = parsed(&format!("{TOUR}\n{TOUR}"));
     assert!(found.is_empty());
-    let (early, late) = second.declarations.split_at(first.declarations.len());
-    assert_eq!(early, first.declarations);
+    let all: Vec<_> = second.declarations.iter().collect();
+    let (early, late) = all.split_at(first.declarations.len());
+    assert_eq!(early, first.declarations.iter().collect::<Vec<_>>());
     let shift = TOUR.len() as u32 + 1;
     for (a, b) in early.iter().zip(late) {
         assert_eq!((a.span.start + shift, a.span.end + shift, &a.doc, a.nodes.len()), (b.span.start, b.span.end, &b.doc, b.nodes.len()));
@@ -164,4 +165,37 @@ fn a_known_shape_gives_the_same_tree() {
             assert_eq!((x.span.start + shift, x.span.end + shift), (y.span.start, y.span.end));
         }
     }
+}
+
+/// What is told of a declaration without its tree is what its tree tells.
+#[test]
+fn declarations_are_the_same_with_and_without_their_trees() {
+    let long = format!("let long = \"{}\" + \"{{long}}\" + short\n", "x".repeat(300));
+    let text = format!("{TOUR}\n{long}{}{TOUR}", long.replace("long =", "longer ="));
+    let (script, found, _) = parsed(&text);
+    assert!(found.is_empty());
+    let all = &script.declarations;
+    for (at, whole) in all.iter().enumerate() {
+        assert_eq!((all.keyword(at), all.span(at), all.keyword_span(at)), (whole.keyword, whole.span, whole.keyword_span));
+        assert_eq!(all.bound(at), scopes::bound(&whole));
+        let (mut names, mut from) = (Vec::new(), 0);
+        while let Some((behind, name)) = all.find_use(at, from, Some) {
+            names.push(name);
+            from = behind;
+        }
+        let used = whole.nodes.iter().filter_map(|node| match node.expr {
+            Expr::Name(name) | Expr::Call { name, .. } => Some(name),
+            _ => None,
+        });
+        assert_eq!(names, used.collect::<Vec<_>>());
+        let family = match &whole.kind {
+            DeclarationKind::Value { family, .. } | DeclarationKind::Collection { family, .. } => family.len(),
+            _ => 0,
+        };
+        assert_eq!(all.family_size(at), family);
+    }
+    let last = |name: &str| text.rfind(name).unwrap() as u32;
+    let longer = (0..all.len()).find(|at| all.bound(*at).is_some_and(|b| b.span.start == last("longer"))).unwrap();
+    let texts = all.whole(longer).nodes.iter().filter(|node| matches!(node.expr, Expr::Text(_))).count();
+    assert_eq!((all.span(longer).end, texts), (last(" + short") + 8, 2));
 }

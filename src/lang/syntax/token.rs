@@ -88,6 +88,19 @@ pub(crate) enum Kind {
     Near,
 }
 
+/// The keyword of the declaration that each kind opens.
+static OPENED: [Option<Keyword>; Kind::Near as usize + 1] = opened();
+
+const fn opened() -> [Option<Keyword>; Kind::Near as usize + 1] {
+    let mut opened = [None; Kind::Near as usize + 1];
+    let mut word = 0;
+    while word < WORDS.len() {
+        opened[WORDS[word].kind as usize] = WORDS[word].keyword;
+        word += 1;
+    }
+    opened
+}
+
 /// The kind of a word.
 pub(crate) fn kind_of_word(word: &str) -> Kind {
     if !(2..=9).contains(&word.len()) || !word.as_bytes()[0].is_ascii_lowercase() {
@@ -99,7 +112,7 @@ pub(crate) fn kind_of_word(word: &str) -> Kind {
 impl Kind {
     /// The keyword of a declaration that starts with this token.
     pub(crate) fn keyword(self) -> Option<Keyword> {
-        if self.is_reserved() { WORDS.iter().find(|w| w.kind == self)?.keyword } else { None }
+        OPENED[self as usize]
     }
 
     /// Whether it is a word that cannot be a name.

@@ -31,7 +31,7 @@ pub(crate) fn build(declaration: Pair<'_>, tokens: &Tokens, base: usize, end: us
     let declaration = Declaration { keyword, span, keyword_span, doc: None, kind, nodes: builder.nodes };
     let powers = tokens.kinds[base..end].windows(3).enumerate();
     let powers = powers.filter(|(_, w)| **w == [Kind::Quantity, Kind::Caret, Kind::Number]).map(|(at, _)| at as u32).collect();
-    Ok(Shape { declaration, stretches: builder.stretches.concat(), powers })
+    Ok(Shape::new(declaration, builder.stretches.concat(), powers))
 }
 
 impl Builder<'_> {

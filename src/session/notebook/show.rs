@@ -208,10 +208,11 @@ impl Notebook {
         for (name, value) in &self.now.state.sets {
             let mut names = crate::lang::words::names::Names::default();
             let (script, _) = parse(&text, crate::lang::diag::diagnostic::FileId(0), &mut names);
-            let param = script.declarations.iter().filter(|d| d.keyword == Keyword::Param).find_map(|d| match &d.kind {
-                DeclarationKind::Param { bound, value, .. } if names.text(bound.name) == name => Some(d.nodes.get(value.index())?.span),
-                _ => None,
-            });
+            let param =
+                script.declarations.with_keyword(Keyword::Param).map(|at| script.declarations.whole(at)).find_map(|d| match &d.kind {
+                    DeclarationKind::Param { bound, value, .. } if names.text(bound.name) == name => Some(d.nodes.get(value.index())?.span),
+                    _ => None,
+                });
             if let Some(span) = param {
                 text.replace_range(span.start as usize..span.end as usize, value);
             }

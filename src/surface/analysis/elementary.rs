@@ -118,7 +118,7 @@ impl Form {
 
 fn round(profile: &Curve) -> Option<(EllipticArc, f64)> {
     let CurveShape::Arc(arc) = profile.shape() else { return None };
-    arc.radius.map(|radius| (*arc, radius))
+    arc.radius.map(|radius| (**arc, radius))
 }
 
 /// An extruded profile, with the direction from the axis to its start.

@@ -48,7 +48,7 @@ impl Guide {
         let (first, last) = (curve.jet(a).d1.length(), curve.jet(b).d1.length());
         let (head, tail) = (piece(a - reach / first, a), piece(b, b + reach / last));
         let (before, after) = (head.length(), tail.length());
-        let runs = std::iter::once(head).chain(given.runs().iter().cloned()).chain(std::iter::once(tail)).collect();
+        let runs: Vec<_> = std::iter::once(head).chain(given.runs().iter().cloned()).chain(std::iter::once(tail)).collect();
         let chain = Chain::of_runs(runs, given.origin());
         let whole = chain.length();
         Ok(Some(Self { given: given.clone(), own: (before / whole, (whole - after) / whole), chain }))

@@ -17,7 +17,7 @@ pub(crate) fn one_circle<'a>(a: &View<'a>, b: &View<'a>, point: f64) -> Option<(
     }
     let normal = x.u.cross(x.v) / (rx * rx);
     let tilt = normal.dot(y.u).abs().max(normal.dot(y.v).abs());
-    (tilt <= 0.125 * point / std::f64::consts::SQRT_2).then_some((x, y))
+    (tilt <= 0.125 * point / std::f64::consts::SQRT_2).then_some((&**x, &**y))
 }
 
 /// The overlaps of two parts (less than half a turn each), in their own angles; ends count.

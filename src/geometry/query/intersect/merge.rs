@@ -24,26 +24,16 @@ pub(crate) fn hits(search: &Search, shared: &[Shared], tolerance: &Tolerance) ->
     if shared.is_empty() && search.found.is_empty() {
         return Vec::new();
     }
+    if let ([found], true) = (search.found.as_slice(), shared.is_empty()) {
+        // As nearly always: nothing to be compared with.
+        return vec![point(search, found, tolerance).hit()];
+    }
     let overlaps = join(search, shared, tolerance);
     let (a, b) = (search.a, search.b);
-    let (seam_a, seam_b) = (Seam::of(a.curve, tolerance), Seam::of(b.curve, tolerance));
     let mut points: Vec<Point> = search
         .found
         .iter()
-        .map(|found| {
-            let common = |side: Side, section: usize, t: f64| side.pieces.sections[section].to_common(t);
-            let ta = seam_a.settle(common(a, found.sections.0, found.near.ta));
-            let tb = seam_b.settle(common(b, found.sections.1, found.near.tb));
-            let (va, vb) = (a.view(found.sections.0), b.view(found.sections.1));
-            let ends = u8::from(va.at_end(found.near.ta)) + u8::from(vb.at_end(found.near.tb));
-            let mut found = *found;
-            // An end neither crosses nor touches by itself: its direction decides.
-            if ends > 0 {
-                let (da, db) = (va.jet(found.near.ta).d1, vb.jet(found.near.tb).d1);
-                found.tangent = !tolerance.is_kink(da, db) || !tolerance.is_kink(da, -db);
-            }
-            Point { ta, tb, found, ends }
-        })
+        .map(|found| point(search, found, tolerance))
         .filter(|p| !overlaps.iter().any(|s| s.holds(a.curve, b.curve, p, tolerance)))
         .collect();
     points.sort_by(|x, y| x.ta.total_cmp(&y.ta).then(x.tb.total_cmp(&y.tb)));
@@ -62,20 +52,24 @@ impl Point {
     }
 }
 
-/// The ends of a curve; on a closed one the last parameter stands for the first.
-struct Seam {
-    domain: (f64, f64),
-    closed: bool,
-}
-
-impl Seam {
-    fn of(curve: &Curve, tolerance: &Tolerance) -> Self {
-        Self { domain: curve.domain(), closed: curve.is_closed(tolerance) }
+/// What was found with the parameters of the whole curves.
+fn point(search: &Search, found: &Found, tolerance: &Tolerance) -> Point {
+    let (a, b) = (search.a, search.b);
+    let whole = |side: Side, section: usize, t: f64| {
+        let (t, domain) = (side.pieces.sections[section].to_common(t), side.curve.domain());
+        // On a closed curve the last parameter stands for the first.
+        if t == domain.1 && side.curve.is_closed(tolerance) { domain.0 } else { t }
+    };
+    let (ta, tb) = (whole(a, found.sections.0, found.near.ta), whole(b, found.sections.1, found.near.tb));
+    let (va, vb) = (a.view(found.sections.0), b.view(found.sections.1));
+    let ends = u8::from(va.at_end(found.near.ta)) + u8::from(vb.at_end(found.near.tb));
+    let mut found = *found;
+    // An end neither crosses nor touches by itself: its direction decides.
+    if ends > 0 {
+        let (da, db) = (va.jet(found.near.ta).d1, vb.jet(found.near.tb).d1);
+        found.tangent = !tolerance.is_kink(da, db) || !tolerance.is_kink(da, -db);
     }
-
-    fn settle(&self, t: f64) -> f64 {
-        if self.closed && t == self.domain.1 { self.domain.0 } else { t }
-    }
+    Point { ta, tb, found, ends }
 }
 
 /// Whether two parameters of a curve are one place on it: near in space and also half-way between them.

@@ -14,8 +14,9 @@ use glam::DVec3;
 use crate::base::fault::Result;
 use crate::base::tolerance::Tolerance;
 use crate::base::work;
-use crate::geometry::curves::curve::Curve;
+use crate::geometry::curves::curve::{Curve, Shape};
 use crate::geometry::data::fault::CurveFault;
+use crate::geometry::query::intersect::newton::segments;
 use crate::geometry::query::intersect::search::{Search, Side};
 
 /// Pairs of parts that are looked at in the time of an evaluation of a curve.
@@ -62,7 +63,14 @@ impl Hit {
 /// end that lies on the other curve within the tolerance is a hit at exactly that end. On a closed curve the first
 /// parameter stands for the last one too. E413 when the work exceeds its limit.
 pub fn intersect(a: &Curve, b: &Curve, tolerance: &Tolerance) -> Result<Vec<Hit>> {
-    let mut search = Search::new(Side::of(a), Side::of(b), tolerance.point);
+    if let (&Shape::Line(a0, a1), &Shape::Line(b0, b1)) = (a.shape(), b.shape()) {
+        let apart = segments((a0, a1), (b0, b1)).0;
+        if apart > tolerance.point * tolerance.point || apart.is_nan() {
+            return Ok(Vec::new());
+        }
+    }
+    let passing = [a, b].map(Curve::passing_pieces);
+    let mut search = Search::new(Side::with(a, &passing[0]), Side::with(b, &passing[1]), tolerance.point);
     search.run();
     finish(search, tolerance)
 }

@@ -52,6 +52,11 @@ impl<'a> Side<'a> {
         Self { curve, pieces: curve.pieces() }
     }
 
+    /// With the pieces that were made in passing, if any.
+    pub(crate) fn with(curve: &'a Curve, passing: &'a Option<Pieces>) -> Self {
+        Self { curve, pieces: passing.as_ref().unwrap_or_else(|| curve.pieces()) }
+    }
+
     pub(crate) fn view(&self, section: usize) -> View<'a> {
         self.pieces.view_of(self.curve, section)
     }

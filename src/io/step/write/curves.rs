@@ -27,7 +27,7 @@ impl Along {
             return Ok(Self::Line(*a, *b));
         }
         match curve.shape() {
-            Shape::Arc(arc) if arc.radius.is_some() => Ok(Self::Circle(*arc)),
+            Shape::Arc(arc) if arc.radius.is_some() => Ok(Self::Circle(**arc)),
             _ => {
                 let curve = curve.to_nurbs(&scale.tolerance)?;
                 let ((a, b), n) = (curve.domain(), curve.knots.len());
