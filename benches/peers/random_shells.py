@@ -139,12 +139,14 @@ def write(folder):
         shell = Shell(seed)
         name = f"{shell.kind}-{seed}"
         (folder / f"{name}.loft").write_text(shell.loft(f"size: {COARSE_SIZE}", files=False))
-        truth[name] = {"faces": shell.faces, "euler": shell.euler, "area": shell.area}
+        truth[name] = {"faces": shell.faces, "euler": shell.euler, "area": shell.area, "least_angle": FLOORS.get(seed, LEAST_ANGLE)}
     (folder / "truth.json").write_text(json.dumps(truth, indent=1) + "\n")
 
 
-# Seeds of the test of ten shells: one of each kind, two of those with poles and of those with trimmed faces.
-CASES_OF_TEST = (0, 1, 2, 3, 4, 5, 6, 8, 11, 14)
+# Seeds of the test of ten shells: one of each kind at least, with poles, trimmed faces and faces of three sides.
+CASES_OF_TEST = (0, 1, 2, 3, 8, 10, 12, 14, 20, 25)
+# Those that have smaller angles: a web between a hole and a border as wide as the size, strips a quarter as wide.
+FLOORS = {0: 25.0, 8: 15.0}
 COARSE_SIZE = "2.5%"
 
 
