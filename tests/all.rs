@@ -51,6 +51,7 @@ mod properties;
 mod quads;
 mod quadtree;
 mod random_nets;
+mod random_shells;
 mod repl;
 mod report;
 mod scatters;

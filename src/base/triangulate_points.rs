@@ -85,37 +85,88 @@ pub fn points(points: &[DVec2], edges: &[[u32; 2]]) -> Result<Triangles, PointsF
             return Err(PointsFault::Crosses(a, b));
         }
     }
-    // In the order of their corners: that of loading follows distances from the middle of all, which the last bit of a point changes.
-    let mut faces: Vec<([u32; 3], usize, usize)> = job::looking(cdt.inner_faces().enumerate())
-        .map(|(k, face)| {
-            let mut corners = face.vertices().map(|vertex| vertex.data().index);
-            let first = (0..3).min_by_key(|k| corners[*k]).unwrap_or(0);
-            corners.rotate_left(first);
-            (corners, first, k)
-        })
-        .collect();
-    job::sort(&mut faces);
-    let mut place = vec![NO_TRIANGLE; faces.len()];
-    faces.iter().enumerate().for_each(|(k, (.., face))| place[*face] = k as u32);
-    let handles: Vec<_> = cdt.inner_faces().map(|face| face.fix()).collect();
-    let mut result = Triangles { corners: faces.iter().map(|(corners, ..)| *corners).collect(), ..Triangles::default() };
-    for (_, first, face) in job::looking(faces) {
-        let mut sides = cdt.face(handles[face]).adjacent_edges();
-        sides.rotate_left(first);
-        let (mut across, mut fixed) = ([NO_TRIANGLE; 3], 0);
-        for (k, side) in sides.iter().enumerate() {
-            // Side k runs from corner k to the next one: opposite the third.
-            let opposite = (k + 2) % 3;
-            if let Some(other) = side.rev().face().as_inner() {
-                // The outer face is the first of all.
-                across[opposite] = place[other.index() - 1];
-            }
-            fixed |= u8::from(side.is_constraint_edge()) << opposite;
-        }
-        result.across.push(across);
-        result.given.push(fixed);
+    drop(vertices);
+    let (corners, given) = by_corners(&cdt);
+    // What the triangulation knows of neighbours takes several times the memory of the triangles.
+    drop(cdt);
+    let across = across(&corners, points.len());
+    Ok(Triangles { corners, across, given })
+}
+
+/// The inner faces in the order of their corners, each from the least one on, and which of their sides are given: the order of loading follows
+/// distances from the middle of all, which the last bit of a point changes. A counting sort by the least corner.
+fn by_corners(cdt: &ConstrainedDelaunayTriangulation<Node>) -> (Vec<[u32; 3]>, Vec<u8>) {
+    let least = |corners: &[u32; 3]| (0..3).min_by_key(|k| corners[*k]).unwrap_or(0);
+    let mut starts = vec![0_u32; cdt.num_vertices() + 1];
+    for face in job::looking(cdt.inner_faces()) {
+        let corners = face.vertices().map(|vertex| vertex.data().index);
+        starts[corners[least(&corners)] as usize + 1] += 1;
     }
-    Ok(result)
+    for n in 1..starts.len() {
+        starts[n] += starts[n - 1];
+    }
+    let mut faces = vec![[NO_TRIANGLE; 3]; cdt.num_inner_faces()];
+    let mut given = vec![0_u8; cdt.num_inner_faces()];
+    for face in job::looking(cdt.inner_faces()) {
+        let mut corners = face.vertices().map(|vertex| vertex.data().index);
+        let mut sides = face.adjacent_edges();
+        let first = least(&corners);
+        corners.rotate_left(first);
+        sides.rotate_left(first);
+        let slot = &mut starts[corners[0] as usize];
+        faces[*slot as usize] = corners;
+        // Side k runs from corner k to the next one: opposite the third.
+        given[*slot as usize] =
+            sides.iter().enumerate().fold(0, |bits, (k, side)| bits | u8::from(side.is_constraint_edge()) << ((k + 2) % 3));
+        *slot += 1;
+    }
+    // Each start is now where the faces of the next node begin.
+    let (mut from, mut own) = (0, Vec::new());
+    for to in job::looking(starts) {
+        let range = from..to as usize;
+        own.clear();
+        own.extend(range.clone().map(|k| (faces[k], given[k])));
+        own.sort_unstable();
+        range.zip(&own).for_each(|(k, (corners, bits))| (faces[k], given[k]) = (*corners, *bits));
+        from = to as usize;
+    }
+    (faces, given)
+}
+
+/// The triangle across each side of each triangle, by the sides at each node: a counting sort by the lower node of a side.
+fn across(corners: &[[u32; 3]], nodes: usize) -> Vec<[u32; 3]> {
+    /// The ends of a side by its number: three a triangle, each opposite a corner.
+    fn ends(corners: &[[u32; 3]], side: u32) -> (u32, u32) {
+        let (t, k) = (corners[side as usize / 3], side as usize % 3);
+        let (a, b) = (t[(k + 1) % 3], t[(k + 2) % 3]);
+        (a.min(b), a.max(b))
+    }
+    let all = 3 * corners.len() as u32;
+    let mut starts = vec![0_u32; nodes + 1];
+    job::looking(0..all).for_each(|side| starts[ends(corners, side).0 as usize + 1] += 1);
+    for n in 1..starts.len() {
+        starts[n] += starts[n - 1];
+    }
+    let mut sides = vec![0_u32; all as usize];
+    for side in job::looking(0..all) {
+        let slot = &mut starts[ends(corners, side).0 as usize];
+        sides[*slot as usize] = side;
+        *slot += 1;
+    }
+    let mut across = vec![[NO_TRIANGLE; 3]; corners.len()];
+    let mut from = 0;
+    for to in job::looking(starts) {
+        let own = &mut sides[from..to as usize];
+        own.sort_unstable_by_key(|side| (ends(corners, *side).1, *side));
+        for pair in own.chunk_by(|a, b| ends(corners, *a) == ends(corners, *b)) {
+            if let [a, b] = *pair {
+                across[a as usize / 3][a as usize % 3] = b / 3;
+                across[b as usize / 3][b as usize % 3] = a / 3;
+            }
+        }
+        from = to as usize;
+    }
+    across
 }
 
 /// Two points at one place.

@@ -16,6 +16,7 @@ use crate::mesh::data::face_geometry::{FaceNodes, Free};
 use crate::mesh::data::face_mesh::FaceMesh;
 use crate::mesh::divide::row_demand::RowDemand;
 use crate::mesh::divide::verdict::Verdict;
+use crate::mesh::mapped::diagonals::DiagonalRule;
 use crate::mesh::mapped::grid::Grid;
 use crate::mesh::mapped::trilateral::{Blocks, Lattice};
 use crate::mesh::request::limits::Limits;
@@ -196,10 +197,10 @@ impl CacheView<'_> {
 
     /// The key of a face: its surface, where its nodes lie, and the points of its border. `border` are the points of all
     /// nodes on borders.
-    pub fn face(&self, face_mesh: &FaceMesh, border: &[DVec3], even: f64) -> Digest {
+    pub fn face(&self, face_mesh: &FaceMesh, border: &[DVec3], rule: DiagonalRule) -> Digest {
         let mut to = self.on("face", face_mesh.surface);
         face_mesh.geometry.nodes.hash_places(&mut to);
-        (face_mesh.elements, even).hash_into(&mut to);
+        (face_mesh.elements, (rule.even, rule.limited)).hash_into(&mut to);
         let mut points = |ids: &[u32]| ids.iter().for_each(|id| border.get(*id as usize).hash_into(&mut to));
         match &face_mesh.geometry.nodes {
             FaceNodes::Grid(_, frame) => frame.sides.iter().for_each(|side| points(side)),

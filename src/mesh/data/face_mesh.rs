@@ -5,7 +5,7 @@ use std::ops::Range;
 use glam::DVec3;
 
 use crate::mesh::data::face_geometry::{FaceGeometry, FaceNodes};
-use crate::mesh::mapped::diagonals::diagonals;
+use crate::mesh::mapped::diagonals::{DiagonalRule, diagonals};
 use crate::mesh::mapped::grid;
 use crate::mesh::mapped::trilateral::LatticeIds;
 use crate::mesh::request::decider::{Decider, Tally};
@@ -101,10 +101,10 @@ impl FaceMesh {
     }
 
     /// For each cell of a grid of triangles whether its other diagonal is the better one. `node` gives points of border and
-    /// inner nodes, `even` the distance below which both diagonals of a cell are as good.
-    pub fn diagonals(&self, surface: &Surface, node: &(dyn Fn(u32) -> DVec3 + Sync), even: f64) -> Vec<bool> {
+    /// inner nodes.
+    pub fn diagonals(&self, surface: &Surface, node: &(dyn Fn(u32) -> DVec3 + Sync), rule: DiagonalRule) -> Vec<bool> {
         match &self.geometry.nodes {
-            FaceNodes::Grid(grid, frame) if self.elements == Elements::Triangles => diagonals(grid, frame, surface, node, even),
+            FaceNodes::Grid(grid, frame) if self.elements == Elements::Triangles => diagonals(grid, frame, surface, node, rule),
             _ => Vec::new(),
         }
     }

@@ -23,14 +23,16 @@ use crate::surface::Surface;
 
 /// The choice between a map and a free mesh.
 pub(crate) struct MapChoiceSettings {
-    /// Least angle of a map that is accepted whatever a free mesh has, radians: 20°.
+    /// Angles of elements below which a warning tells of them, radians: 20°.
     pub(crate) min_map_angle: f64,
-    /// Least angle that free meshes nearly always have, radians: 30°.
-    free_angle: f64,
-    /// Least ratio of the angles of free mesh and map for a free mesh.
-    min_angle_gain: f64,
+    /// When a map of triangles is left for a free mesh.
+    triangles: AngleChoice,
+    /// The same of quads.
+    quads: AngleChoice,
     /// Largest number of free elements for one of the map: rows that limits make narrow save elements.
     max_element_ratio: f64,
+    /// The same for maps without angles that a warning tells of.
+    max_fair_element_ratio: f64,
     /// Largest number of free elements for one that was predicted.
     max_prediction_error: f64,
     /// Number of elements up to which a free mesh may have any number of times the predicted one.
@@ -43,11 +45,25 @@ pub(crate) struct MapChoiceSettings {
     max_opposite_share: f64,
 }
 
+/// When a map is left because of its angles.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct AngleChoice {
+    /// Least angle of a map that is accepted whatever a free mesh has, radians.
+    accepted: f64,
+    /// Least angle that free meshes nearly always have, radians.
+    free: f64,
+    /// Least ratio of the angles of free mesh and map for a free mesh.
+    min_gain: f64,
+}
+
 pub(crate) const MAP_CHOICE: MapChoiceSettings = MapChoiceSettings {
     min_map_angle: PI / 9.0,
-    free_angle: FRAC_PI_6,
-    min_angle_gain: 1.5,
+    // 30°, 34.5° and a gain of 4.5° or more.
+    triangles: AngleChoice { accepted: FRAC_PI_6, free: 1.15 * FRAC_PI_6, min_gain: 1.15 },
+    // 20°, 30°.
+    quads: AngleChoice { accepted: PI / 9.0, free: FRAC_PI_6, min_gain: 1.5 },
     max_element_ratio: 2.5,
+    max_fair_element_ratio: 2.0,
     max_prediction_error: 4.0,
     small_face: 100,
     near_border_length: 2.0,
@@ -69,14 +85,18 @@ pub struct MapQuality {
     pub corner: f64,
     /// Number of elements of a free mesh for one of the map.
     pub element_ratio: f64,
+    /// The elements are triangles.
+    pub split: bool,
 }
 
 impl MapQuality {
     /// Whether free elements have clearly larger angles and are not many more. A sharp corner has one sharp element with any method.
     pub fn is_worse_than_free(&self) -> bool {
-        let worse = |angle: f64, free: f64| angle < MAP_CHOICE.min_map_angle && MAP_CHOICE.min_angle_gain * angle <= free;
-        (worse(self.angle, MAP_CHOICE.free_angle.min(self.corner)) || worse(self.away, MAP_CHOICE.free_angle))
-            && self.element_ratio <= MAP_CHOICE.max_element_ratio
+        let AngleChoice { accepted, free, min_gain } = if self.split { MAP_CHOICE.triangles } else { MAP_CHOICE.quads };
+        let worse = |angle: f64, free: f64| angle < accepted && min_gain * angle <= free;
+        let fair = self.angle.min(self.away) >= MAP_CHOICE.min_map_angle;
+        let most = if fair { MAP_CHOICE.max_fair_element_ratio } else { MAP_CHOICE.max_element_ratio };
+        (worse(self.angle, free.min(self.corner)) || worse(self.away, free)) && self.element_ratio <= most
     }
 }
 
@@ -105,16 +125,24 @@ pub fn better_free(
     predicted.iter().enumerate().filter_map(chosen).collect()
 }
 
-/// Faces that are free for better angles and have many more elements than predicted, or elements with normals opposite to the surface's.
+/// Faces that are free for better angles and have none, or many more elements than predicted, or elements with normals opposite to the surface's.
 pub fn better_mapped(face_input: &FaceInput, prepared: &[FaceMesh], mesh: &Mesh) -> Vec<usize> {
     let worse = |f: usize| {
         let (face, face_mesh) = (&face_input.layout.faces[f], &prepared[f]);
         let many = (face_mesh.triangles + face_mesh.quads) as f64
             > MAP_CHOICE.max_prediction_error * (face.foreseen_free.max(MAP_CHOICE.small_face)) as f64;
-        matches!(face.uneven, Some(Uneven::Sharp(_))) && (many || opposite(face_mesh, mesh).0 > 0)
+        let Some(Uneven::Sharp(of_map)) = face.uneven else { return false };
+        many || opposite(face_mesh, mesh).0 > 0 || is_sharper(face_mesh, mesh, of_map)
     };
     let found = par::map(prepared.len(), worse);
     (0..prepared.len()).filter(|f| found[*f]).collect()
+}
+
+/// Whether some triangle of a free face of triangles has a smaller angle than its map would have, radians.
+fn is_sharper(face_mesh: &FaceMesh, mesh: &Mesh, of_map: f64) -> bool {
+    let FaceNodes::Free(free, ids) = &face_mesh.geometry.nodes else { return false };
+    let corners = |t: &[u32; 3]| t.map(|n| mesh.nodes[ids[n as usize] as usize]);
+    free.quads.is_empty() && free.triangles.iter().any(|t| least_angle(&corners(t), false) < of_map)
 }
 
 /// Whether the elements of a free face cross its surface instead of following it, as a few of them round a whole ring may.
@@ -184,10 +212,10 @@ fn of_face(face_input: &FaceInput, face: &Face, face_mesh: &FaceMesh) -> Option<
     let bends = (limits.chord.is_some() || limits.angle.is_some()) && !face_mesh.geometry.surface.is_flat();
     let each = cells.iter().zip(&shapes).filter(|(_, shape)| shape.len() > 2).map(|(cell, shape)| {
         let by_bends = if bends { wanted(&face_mesh.geometry.surface, &limits, &cell.nodes) } else { f64::INFINITY };
-        element_ratio(face.size.0.min(by_bends), shape, shape.len() < cell.nodes.len(), split)
+        element_ratio(face.size.0.min(by_bends), shape, shape.len() < cell.nodes.len(), cell.rows, split)
     });
     let element_ratio = each.sum::<f64>() / cells.len() as f64;
-    Some(MapQuality { angle, away, corner, element_ratio })
+    Some(MapQuality { angle, away, corner, element_ratio, split })
 }
 
 /// A cell of a map.
@@ -195,6 +223,8 @@ struct SampledCell {
     nodes: Vec<CellNode>,
     /// At a corner of the face.
     corner: bool,
+    /// Number of cells in its row and in its column; 1 where they are not alike.
+    rows: (usize, usize),
 }
 
 /// Some cells of a map.
@@ -203,12 +233,18 @@ fn cells(face_mesh: &FaceMesh) -> Option<Vec<SampledCell>> {
         FaceNodes::Grid(grid, frame) => {
             let (nu, nv) = grid.size();
             let node = |(i, j): (usize, usize)| (frame.node(i, j), grid.uv(i, j));
-            let some = |n: usize| [0, n / 2, n - 1];
-            let at = some(nv).into_iter().flat_map(|j| some(nu).map(|i| (i, j)));
+            let some = |n: usize| {
+                let mut places = vec![0, n / 4, n / 2, n - 1 - n / 4, n - 1];
+                places.sort_unstable();
+                places.dedup();
+                places
+            };
+            let at = some(nv).into_iter().flat_map(|j| some(nu).into_iter().map(move |i| (i, j)));
             let end = |k: usize, n: usize| k == 0 || k == n - 1;
             let cell = |(i, j): (usize, usize)| SampledCell {
                 nodes: [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)].map(node).to_vec(),
                 corner: end(i, nu) && end(j, nv),
+                rows: (nu, nv),
             };
             Some(at.map(cell).collect())
         }
@@ -221,7 +257,7 @@ fn cells(face_mesh: &FaceMesh) -> Option<Vec<SampledCell>> {
             };
             let all = LatticeIds::triangles(n).filter(|t| near(t[0]));
             let corner = |at: (usize, usize)| [(0, 0), (n - 1, 0), (0, n - 1)].contains(&at);
-            Some(all.map(|t| SampledCell { nodes: t.map(node).to_vec(), corner: corner(t[0]) }).collect())
+            Some(all.map(|t| SampledCell { nodes: t.map(node).to_vec(), corner: corner(t[0]), rows: (n, n) }).collect())
         }
         FaceNodes::Blocks(blocks, places) => {
             let node = |n: u32| (places[n as usize], blocks.uv[n as usize]);
@@ -230,7 +266,7 @@ fn cells(face_mesh: &FaceMesh) -> Option<Vec<SampledCell>> {
             let some = blocks.quads.iter().step_by(apart).chain(blocks.quads.last());
             let ends: Vec<u32> = blocks.sides.iter().filter_map(|side| side.first()).chain(blocks.sides[1].last()).copied().collect();
             let corner = |q: &[u32; 4]| q.iter().any(|n| ends.contains(n));
-            Some(some.map(|q| SampledCell { nodes: q.map(node).to_vec(), corner: corner(q) }).collect())
+            Some(some.map(|q| SampledCell { nodes: q.map(node).to_vec(), corner: corner(q), rows: (1, 1) }).collect())
         }
         _ => None,
     }
@@ -322,8 +358,9 @@ fn wanted(surface: &Surface, limits: &Limits, nodes: &[CellNode]) -> f64 {
 }
 
 /// Number of free elements for one of the map, by a cell: free ones are as long as the size allows, and no longer than twice the distance of
-/// near borders. A cell at a pole is narrow by the map alone: no borders are near each other there.
-fn element_ratio(size: f64, cell: &[DVec3], at_pole: bool, split: bool) -> f64 {
+/// near borders, which are as far apart as its row or column is long. A cell at a pole is narrow by the map alone: no borders are near each
+/// other there.
+fn element_ratio(size: f64, cell: &[DVec3], at_pole: bool, rows: (usize, usize), split: bool) -> f64 {
     let n = cell.len();
     let lengths: Vec<f64> = (0..n).map(|k| cell[k].distance(cell[(k + 1) % n])).collect();
     let (along, across) = match lengths[..] {
@@ -332,7 +369,8 @@ fn element_ratio(size: f64, cell: &[DVec3], at_pole: bool, split: bool) -> f64 {
     };
     let twice = (1..n - 1).map(|k| (cell[k] - cell[0]).cross(cell[k + 1] - cell[0])).sum::<DVec3>().length();
     let area = if split && n == 4 { 0.25 * twice } else { 0.5 * twice };
-    let apart = if at_pole { f64::INFINITY } else { MAP_CHOICE.near_border_length * along.min(across) };
+    let borders = (rows.0 as f64 * along).min(rows.1 as f64 * across);
+    let apart = if at_pole { f64::INFINITY } else { MAP_CHOICE.near_border_length * borders };
     let length = (SPACING * size).min(apart);
     let own = if split { EQUILATERAL } else { 1.0 };
     if length > 0.0 { area / (own * length * length) } else { 0.0 }

@@ -20,7 +20,7 @@ use crate::mesh::divide::too_large::refuse_counts;
 use crate::mesh::divide::verdict::{self, Finished, Verdict};
 use crate::mesh::face::coincident::{self, Demand};
 use crate::mesh::face::{map_quality, twins};
-use crate::mesh::pipeline::fill::{Refill, fill, free, number, prepare};
+use crate::mesh::pipeline::fill::{Refill, diagonal_rule, fill, free, number, prepare};
 use crate::mesh::report::blame;
 use crate::mesh::report::explain::Explanation;
 use crate::mesh::request::input::Input;
@@ -204,7 +204,7 @@ impl Attempt<'_> {
         if !better.is_empty() {
             return Ok(RoundResult::Again(Retry::BetterFree(better), counts));
         }
-        let key = |cache: &CacheView| prepared.iter().map(|face_mesh| cache.face(face_mesh, &border, input.tolerance.point)).collect();
+        let key = |cache: &CacheView| prepared.iter().map(|face_mesh| cache.face(face_mesh, &border, diagonal_rule(input))).collect();
         let keys: Vec<Digest> = cache.map(key).unwrap_or_default();
         let keyed = cache.map(|cache| KeyedFaces { cache, keys: &keys });
         let mut mesh = fill(input, &border, &prepared, keyed, Refill::First, job)?;

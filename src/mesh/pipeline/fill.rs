@@ -13,6 +13,7 @@ use crate::mesh::data::face_mesh::FaceMesh;
 use crate::mesh::data::mesh::Mesh;
 use crate::mesh::divide::relations::Relations;
 use crate::mesh::face::mapped::{self, refuse_triangles};
+use crate::mesh::mapped::diagonals::DiagonalRule;
 use crate::mesh::pipeline::free_face;
 use crate::mesh::request::input::Input;
 use crate::mesh::request::work::too_many;
@@ -30,6 +31,12 @@ pub(crate) fn prepare(face_input: &FaceInput, relations: &Relations, counts: &[u
     refuse_triangles(face_input.input, layout, &prepared)?;
     number(face_input, &mut prepared);
     Ok(prepared)
+}
+
+/// How diagonals of mapped triangles are chosen.
+pub(crate) fn diagonal_rule(input: &Input) -> DiagonalRule {
+    let settings = &input.plan.settings;
+    DiagonalRule { even: input.tolerance.point, limited: settings.chord_error.is_some() || settings.angle_error.is_some() }
 }
 
 /// Number of free faces that are made before their elements are compared with the largest number of a mesh.
@@ -97,7 +104,7 @@ impl Fill<'_> {
             self.face_mesh.points(surface, self.nodes);
             let (first, own) = (self.face_mesh.first, &*self.nodes);
             let node = |id: u32| if id < first { border[id as usize] } else { own[(id - first) as usize] };
-            self.face_mesh.diagonals(surface, &node, input.tolerance.point)
+            self.face_mesh.diagonals(surface, &node, diagonal_rule(input))
         });
         self.face_mesh.fill(&diagonals, self.triangles, self.quads);
         if let Some((cache, key)) = self.key {

@@ -74,7 +74,7 @@ pub fn triangulate(task: &Task, job: &Job) -> Outcome<Triangulated> {
         }
     }
     optimizer.set_upright();
-    let mut triangulation = optimizer.triangulation;
+    let mut triangulation = optimizer.into_triangulation();
     triangulation.compact();
     Ok(Ok(Triangulated { triangulation, keeps_limits: bad.is_empty() }))
 }
@@ -94,7 +94,7 @@ pub fn initial_triangulation(task: &Task, job: &Job) -> Outcome<Triangulation> {
     if expected(task, &coarse, &kept) > task.most as f64 {
         return Ok(Err(NoMesh::TooManyNodes));
     }
-    let grown = match task.lattice {
+    let mut grown = match task.lattice {
         NodePlacement::Triangles | NodePlacement::Squares => {
             let seeds = seeds(&coarse, &kept, outline);
             let cell = if task.lattice == NodePlacement::Squares { LatticeCell::Square } else { LatticeCell::Triangle };
@@ -112,7 +112,8 @@ pub fn initial_triangulation(task: &Task, job: &Job) -> Outcome<Triangulation> {
     }
     job.go_on()?;
     let mut xy = outline.xy.clone();
-    xy.extend(&grown.xy);
+    xy.append(&mut grown.xy);
+    grown.xy = Vec::new();
     let all = match points(&xy, &edges) {
         Ok(triangles) => triangles,
         Err(fault) => return Ok(Err(NoMesh::Border(fault))),

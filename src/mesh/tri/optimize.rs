@@ -112,6 +112,11 @@ impl<'a> MeshOptimizer<'a> {
         }
     }
 
+    /// The triangles alone.
+    pub fn into_triangulation(self) -> Triangulation {
+        self.triangulation
+    }
+
     /// The first flips and rounds of smoothing: from here on nodes hardly move.
     pub fn settle(&mut self) {
         self.flip_all();

@@ -245,15 +245,25 @@ impl Triangulation {
         self.p.truncate(next as usize);
         self.xy.truncate(next as usize);
         self.size.truncate(next as usize);
-        let live: Vec<u32> = (0..self.tri.len() as u32).filter(|t| self.alive(*t)).collect();
         let mut place = vec![NO_TRIANGLE; self.tri.len()];
-        live.iter().enumerate().for_each(|(k, t)| place[*t as usize] = k as u32);
-        self.tri = live.iter().map(|t| self.tri[*t as usize].map(|n| number[n as usize])).collect();
-        self.across = live.iter().map(|t| self.across[*t as usize].map(|o| if o == NO_TRIANGLE { o } else { place[o as usize] })).collect();
-        self.locked = live.iter().map(|t| self.locked[*t as usize]).collect();
-        self.stamp = vec![0; live.len()];
+        let mut live = 0;
+        for t in job::looking(0..self.tri.len()) {
+            if self.alive(t as u32) {
+                place[t] = live as u32;
+                (self.tri[live], self.across[live], self.locked[live]) = (self.tri[t], self.across[t], self.locked[t]);
+                live += 1;
+            }
+        }
+        self.tri.truncate(live);
+        self.across.truncate(live);
+        self.locked.truncate(live);
+        self.tri.iter_mut().for_each(|c| *c = c.map(|n| number[n as usize]));
+        self.across.iter_mut().for_each(|a| *a = a.map(|o| if o == NO_TRIANGLE { o } else { place[o as usize] }));
+        self.stamp.clear();
+        self.stamp.resize(live, 0);
         self.turn = 0;
-        self.at = vec![NO_TRIANGLE; self.p.len()];
+        self.at.clear();
+        self.at.resize(self.p.len(), NO_TRIANGLE);
         for (t, c) in job::looking(self.tri.iter().enumerate()) {
             c.iter().for_each(|n| self.at[*n as usize] = t as u32);
         }

@@ -90,7 +90,7 @@ pub fn find(input: &Input, parts: &[MeshBody], known: Vec<Vec<Leaves>>) -> Vec<T
     let leaves = par::map(wanted.len(), |n| {
         let (part, face) = wanted[n];
         let surface = &input.model.surfaces[parts[part].layout.faces[face].surface.index()].surface;
-        Leaves::new(parts[part].mesh, face, surface.is_flat(), near)
+        Leaves::new(parts[part].mesh, face, surface.is_flat(), (near, parts[part].layout.faces[face].near))
     });
     let scan = BodyScan { input, parts, known, computed: wanted.into_iter().zip(leaves).collect() };
     if let Some(budget) = work::budget() {

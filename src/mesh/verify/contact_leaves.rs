@@ -6,11 +6,10 @@ use crate::base::bbox::Box3;
 use crate::base::boxtree::BoxTree;
 use crate::base::job;
 use crate::mesh::data::mesh::Mesh;
+use crate::mesh::verify::contact_reach::{BULGE, FaceBulge};
 
 /// Number of elements in a box.
 const LEAF_SIZE: usize = 8;
-/// Largest distance of a curved face from its element, as a share of the element's longest edge: more than usual sizes leave.
-pub const BULGE: f64 = 0.2;
 /// Share of the way from a node of the border to the middle of its element.
 const INWARD_SHARE: f64 = 0.25;
 
@@ -33,22 +32,25 @@ pub struct Leaves {
 }
 
 impl Leaves {
-    /// The elements of a face of a mesh by its number.
-    pub fn new(mesh: &Mesh, face: usize, flat: bool, near: f64) -> Self {
+    /// The elements of a face of a mesh by its number; `glued` is how far nodes of its border may be from its surface.
+    pub fn new(mesh: &Mesh, face: usize, flat: bool, (near, glued): (f64, f64)) -> Self {
         let range = |r: &std::ops::Range<u32>| r.start as usize..r.end as usize;
         let own = &mesh.faces[face];
         let halves = |q: &[u32; 4]| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]];
         let mut triangles = mesh.triangles[range(&own.triangles)].to_vec();
         triangles.extend(mesh.quads[range(&own.quads)].iter().flat_map(halves));
         let (mut boxes, mut reach) = (Vec::new(), Vec::new());
-        for leaf in triangles.chunks(LEAF_SIZE) {
+        let bulge = if flat { None } else { FaceBulge::new(mesh, face) };
+        for (k, leaf) in triangles.chunks(LEAF_SIZE).enumerate() {
             job::poll();
             let around = leaf.iter().flatten().fold(Box3::EMPTY, |all, n| all.with(mesh.nodes[*n as usize]));
             let longest = |t: &[u32; 3]| {
                 let [a, b, c] = t.map(|n| mesh.nodes[n as usize]);
                 a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a))
             };
-            let by = if flat { near } else { near + BULGE * leaf.iter().map(longest).fold(0.0, f64::max).sqrt() };
+            let most = || BULGE * leaf.iter().map(longest).fold(0.0, f64::max).sqrt();
+            let known = |bulge: &FaceBulge| (k * LEAF_SIZE..k * LEAF_SIZE + leaf.len()).map(|t| bulge.of(t)).fold(0.0, f64::max);
+            let by = if flat { near } else { near + most().min(bulge.as_ref().map_or(f64::INFINITY, |bulge| glued + known(bulge))) };
             boxes.push(around);
             reach.push(by);
         }
@@ -252,28 +254,33 @@ fn through([a, b, c]: [DVec3; 3], (p, q): (DVec3, DVec3), near: f64) -> Option<D
     (inside(a, b) && inside(b, c) && inside(c, a)).then_some(at)
 }
 
-/// Shares of the line between two points within which it may be so near a triangle: by the box and the plane of that; `None`: nowhere.
+/// Shares of the line between two points within which it may be so near a triangle: by the box, the plane and the sides of that; `None`: nowhere.
 fn part_near([a, b, c]: [DVec3; 3], (p, q): (DVec3, DVec3), near: f64) -> Option<(f64, f64)> {
-    let (mut from, mut to) = (0.0_f64, 1.0_f64);
-    let mut clip = |start: f64, end: f64, low: f64, high: f64| {
-        let run = end - start;
-        if run == 0.0 {
-            if start < low || start > high {
-                to = -1.0;
-            }
-            return;
-        }
-        let (x, y) = ((low - start) / run, (high - start) / run);
-        (from, to) = (from.max(x.min(y)), to.min(x.max(y)));
-    };
+    let mut part = (0.0, 1.0);
     let (low, high) = (a.min(b).min(c), a.max(b).max(c));
     for k in 0..3 {
-        clip(p[k], q[k], low[k] - near, high[k] + near);
+        part = clipped(part, (p[k], q[k]), (low[k] - near, high[k] + near))?;
     }
     let normal = (b - a).cross(c - a).normalize_or_zero();
-    if normal != DVec3::ZERO {
-        clip(normal.dot(p - a), normal.dot(q - a), -near, near);
+    if normal == DVec3::ZERO {
+        return Some(part);
     }
+    part = clipped(part, (normal.dot(p - a), normal.dot(q - a)), (-near, near))?;
+    for (from, to) in [(a, b), (b, c), (c, a)] {
+        let out = (to - from).cross(normal).normalize_or_zero();
+        part = clipped(part, (out.dot(p - from), out.dot(q - from)), (f64::NEG_INFINITY, near))?;
+    }
+    Some(part)
+}
+
+/// The part of a line between two shares where a coordinate that runs from `start` to `end` lies between two values.
+fn clipped((from, to): (f64, f64), (start, end): (f64, f64), (low, high): (f64, f64)) -> Option<(f64, f64)> {
+    let run = end - start;
+    if run == 0.0 {
+        return (low <= start && start <= high).then_some((from, to));
+    }
+    let (x, y) = ((low - start) / run, (high - start) / run);
+    let (from, to) = (from.max(x.min(y)), to.min(x.max(y)));
     (from <= to).then_some((from, to))
 }
 
@@ -308,5 +315,15 @@ mod tests {
         {
             assert!((distance(t, q) - wanted).abs() < 1e-15, "{q}");
         }
+    }
+
+    #[test]
+    fn lines_are_near_triangles_within_their_sides() {
+        let t = [DVec3::ZERO, DVec3::X, DVec3::Y];
+        let line = |x: f64, y: f64| (DVec3::new(x, y, 0.0), DVec3::new(x + 1.0, y + 1.0, 0.0));
+        let (from, to) = part_near(t, line(0.0, 0.0), 0.1).unwrap();
+        assert!(from == 0.0 && (to - (0.5 + 0.1 * 0.5_f64.sqrt())).abs() < 1e-15, "{to}");
+        assert_eq!(part_near(t, line(0.6, 0.6), 0.1), None, "in the box of the triangle, and beyond its side");
+        assert_eq!(part_near(t, (DVec3::Z, DVec3::X + DVec3::Z), 0.1), None);
     }
 }

@@ -11,7 +11,8 @@ use crate::mesh::border::layout::Layout;
 use crate::mesh::border::nodes::Nodes;
 use crate::mesh::data::mesh::Mesh;
 use crate::mesh::request::input::Input;
-use crate::mesh::verify::contact_leaves::{BULGE, Leaves};
+use crate::mesh::verify::contact_leaves::Leaves;
+use crate::mesh::verify::contact_reach::bend_of_step;
 use crate::model::SurfaceId;
 use crate::surface::SurfaceKind;
 
@@ -28,6 +29,8 @@ pub(crate) struct Scan<'a> {
     pub users: Vec<Vec<u32>>,
     /// Nodes along each segment.
     pub along: Vec<Vec<u32>>,
+    /// How far each step of each segment bends beside the line between its nodes, model units.
+    bends: Vec<Vec<f64>>,
     /// Surfaces of the faces that have each segment on their border or inside.
     pub on: Vec<Vec<SurfaceId>>,
     /// Where each surface stands first in the plan.
@@ -39,10 +42,18 @@ impl<'a> Scan<'a> {
         let leaves = par::map(layout.faces.len(), |f| {
             let surface = &input.model.surfaces[layout.faces[f].surface.index()].surface;
             let flat = surface.is_flat() || surface.kind() == SurfaceKind::Plane;
-            Leaves::new(mesh, f, flat, input.tolerance.point)
+            Leaves::new(mesh, f, flat, (input.tolerance.point, layout.faces[f].near))
         });
         let boxes: Vec<Box3> = leaves.iter().map(|l| l.hull).collect();
         let along: Vec<Vec<u32>> = (0..layout.pieces.segments.len()).map(|k| nodes.of_segment(layout, k, false)).collect();
+        let glued = layout.faces.iter().map(|face| face.near).fold(input.tolerance.point, f64::max);
+        let bends_of = |k: usize| -> Vec<f64> {
+            let (ids, fractions) = (&along[k], nodes.fractions(k, false));
+            let steps = ids.windows(2).zip(fractions.windows(2));
+            let chord = |ids: &[u32]| mesh.nodes[ids[0] as usize].distance(mesh.nodes[ids[1] as usize]);
+            steps.map(|(ids, f)| glued + bend_of_step(layout.length(k) * (f[1] - f[0]), chord(ids))).collect()
+        };
+        let bends: Vec<Vec<f64>> = (0..along.len()).map(bends_of).collect();
         let mut users: Vec<Vec<u32>> = vec![Vec::new(); nodes.total as usize];
         for (f, face) in layout.faces.iter().enumerate() {
             let poles = face.sides.iter().filter_map(|s| s.pole).map(|j| nodes.of_junction(j));
@@ -63,7 +74,7 @@ impl<'a> Scan<'a> {
         input.plan.surfaces.iter().enumerate().for_each(|(place, (s, _))| {
             places.entry(*s).or_insert(place);
         });
-        Self { input, layout, mesh, leaves, tree: BoxTree::build(&boxes), users, along, on, places }
+        Self { input, layout, mesh, leaves, tree: BoxTree::build(&boxes), users, along, bends, on, places }
     }
 
     /// Where the surface of a face stands in the plan.
@@ -159,7 +170,7 @@ impl Scan<'_> {
             let around = Box3::of(std::iter::once(p).chain(next));
             faces.clear();
             // An edge may bend beside the line between its nodes.
-            let bend = next.map_or(0.0, |q| BULGE * p.distance(q));
+            let bend = self.bends[segment].get(k).copied().unwrap_or(0.0);
             self.tree.query(&around, bend, |f| faces.push(f));
             faces.sort_unstable();
             for &f in &faces {

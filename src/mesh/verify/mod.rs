@@ -6,6 +6,7 @@ pub mod contact_borders;
 pub mod contact_edges;
 pub mod contact_interiors;
 pub mod contact_leaves;
+pub mod contact_reach;
 pub mod contact_scan;
 pub mod contacts;
 pub mod covered_area;
