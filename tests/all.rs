@@ -52,6 +52,7 @@ mod quads;
 mod quadtree;
 mod random_nets;
 mod random_shells;
+mod random_quads;
 mod repl;
 mod report;
 mod scatters;

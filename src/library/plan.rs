@@ -93,6 +93,12 @@ impl MeshPlan {
         self
     }
 
+    /// Whether plane faces of quads get few irregular nodes, at several times the cost.
+    pub fn regular(mut self, regular: bool) -> Self {
+        self.settings.regular = given(regular);
+        self
+    }
+
     /// Triangles, quads, or both.
     pub fn elements(mut self, elements: Elements) -> Self {
         self.settings.elements = given(elements);

@@ -88,7 +88,8 @@ impl FaceKey<'_> {
         let mut to = cache.on("free face", face.surface).text(env!("CARGO_PKG_VERSION")).number(u64::from(crate::mesh::request::VERSION));
         face_input.input.tolerance.hash_into(&mut to);
         (face.elements, face.method, face.size.0).hash_into(&mut to);
-        (Limits::of(face_input.input), plan.settings.smooth.map(|n| n.0), (plan.slope(), plan.most_elements)).hash_into(&mut to);
+        ((Limits::of(face_input.input), plan.settings.regular()), plan.settings.smooth.map(|n| n.0), (plan.slope(), plan.most_elements))
+            .hash_into(&mut to);
         (face_input.wanted.floor, face_input.wanted.written).hash_into(&mut to);
         (rules.items(), rules.slope()).hash_into(&mut to);
         // Numbers of nodes depend on the whole mesh: here by first appearance.

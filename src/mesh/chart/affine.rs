@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::base::tolerance::EPSILON;
+use crate::base::tolerance::{EPSILON, WHOLE_NUMBER};
 use crate::mesh::chart::parametric_surface::{LocalExpansion, ParametricSurface, Spot};
 use crate::surface::core::evaluator::PreparedSurface;
 use crate::surface::{Domain, Evaluator, Jet2, Surface};
@@ -102,6 +102,12 @@ impl ParametricSurface for Chart {
     fn point(&self, xy: DVec2) -> DVec3 {
         let (u, v) = self.uv(xy);
         self.evaluator().point(u, v)
+    }
+
+    fn plane(&self) -> Option<Spot> {
+        let origin = self.spot(DVec2::ZERO);
+        let off = [origin.dx.length_squared() - 1.0, origin.dy.length_squared() - 1.0, origin.dx.dot(origin.dy)];
+        (self.surface().is_flat() && off.into_iter().all(|x| x.abs() < WHOLE_NUMBER)).then_some(origin)
     }
 
     fn clamp(&self, xy: DVec2) -> DVec2 {

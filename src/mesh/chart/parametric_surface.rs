@@ -58,6 +58,10 @@ pub trait ParametricSurface: Sync {
     fn point(&self, xy: DVec2) -> DVec3 {
         self.spot(xy).p
     }
+    /// The origin of the chart, where the surface is a plane and lengths and angles in the chart are those in it; else `None`.
+    fn plane(&self) -> Option<Spot> {
+        None
+    }
     /// The nearest place where the surface is defined.
     fn clamp(&self, xy: DVec2) -> DVec2;
 }

@@ -1,5 +1,9 @@
 //! Free faces of quads: triangles paired, cells halved, nodes smoothed.
 
+mod cavity;
+pub mod climb;
+pub mod collapse;
+pub mod evening;
 pub mod limit_repair;
 pub mod net;
 pub mod net_check;
@@ -7,7 +11,10 @@ pub mod net_fit;
 pub mod odd;
 pub mod open;
 pub mod pair;
+mod pattern;
+pub mod plane;
 pub mod quad_face;
+pub mod regular;
 pub mod settings;
 pub mod smooth;
 pub mod split;

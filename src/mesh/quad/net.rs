@@ -67,6 +67,40 @@ impl Net {
         }
         least_sine([p[a], p[b], p[c], p[d]], [n[a], n[b], n[c], n[d]])
     }
+
+    /// Keeps some nodes, those of all faces among them; gives their new numbers.
+    pub fn keep_nodes(&mut self, is_kept: impl Fn(usize) -> bool) -> Vec<u32> {
+        let mut number = vec![NONE; self.p.len()];
+        let mut next = 0;
+        for n in job::looking(0..number.len()).filter(|n| is_kept(*n)) {
+            number[n] = next as u32;
+            (self.p[next], self.xy[next], self.normal[next], self.size[next]) = (self.p[n], self.xy[n], self.normal[n], self.size[n]);
+            next += 1;
+        }
+        self.p.truncate(next);
+        self.xy.truncate(next);
+        self.normal.truncate(next);
+        self.size.truncate(next);
+        self.face.iter_mut().flatten().filter(|n| **n != NONE).for_each(|n| *n = number[*n as usize]);
+        number
+    }
+
+    /// Takes a face out; the last one gets its number.
+    pub fn remove(&mut self, f: usize) {
+        self.face.swap_remove(f);
+        if self.across.is_empty() {
+            return;
+        }
+        self.across.swap_remove(f);
+        self.mid.swap_remove(f);
+        self.locked.swap_remove(f);
+        for k in 0..4 {
+            let beyond = self.across.get(f).map_or(NONE, |across| across[k]);
+            if beyond != NONE {
+                self.across[beyond as usize / 4][beyond as usize % 4] = (4 * f + k) as u32;
+            }
+        }
+    }
 }
 
 /// The least quality of some faces.

@@ -9,11 +9,14 @@ use crate::base::job::{self, Job};
 use crate::mesh::chart::halves::{Halves, NONE};
 use crate::mesh::chart::parametric_surface::{ParametricSurface, SizeField, UniformSize};
 use crate::mesh::data::quality::is_concave;
+use crate::mesh::quad::collapse::collapse;
+use crate::mesh::quad::evening::Sides;
 use crate::mesh::quad::net::{Net, Raw};
 use crate::mesh::quad::odd::whole_sides;
 use crate::mesh::quad::open::open;
 use crate::mesh::quad::pair::{SingleTriangles, pair};
-use crate::mesh::quad::settings::{CELL_SINGLES, MIXED_SINGLES, NET_FIT};
+use crate::mesh::quad::regular::{RegularInput, regularize};
+use crate::mesh::quad::settings::{CELL_SINGLES, COLLAPSE, MIXED_SINGLES, NET_FIT};
 use crate::mesh::quad::smooth::Smoother;
 use crate::mesh::quad::split::split;
 use crate::mesh::quad::swap::Swapper;
@@ -90,7 +93,37 @@ impl NetFit<'_> {
         let quads = self.fit.face.elements == Elements::Quads;
         let twice = Twice(wanted);
         let cells: &dyn SizeField = if quads { &twice } else { wanted };
-        let lattice = if self.fit.face.method == Method::Quadtree { NodePlacement::Tree } else { NodePlacement::Squares };
+        let mut net = match self.pairs(cells, job)? {
+            Ok(net) => net,
+            Err(reason) => return Ok(Err(reason)),
+        };
+        self.smooth(&mut net, cells, job)?;
+        if quads {
+            Swapper::new(&mut net).swap();
+            self.collapse(&mut net, cells, job)?;
+            debug_assert_eq!(net.check(), Ok(()));
+            self.smooth(&mut net, cells, job)?;
+            let Some(whole) = whole_sides(&net) else { return Ok(Err(NoMesh::Odd)) };
+            self.narrow_rows(&mut net, &whole, cells, job)?;
+            net = split(&net, &whole, self.fit.chart, wanted);
+            self.smooth(&mut net, wanted, job)?;
+            let fewer = self.collapse(&mut net, wanted, job)?;
+            if self.regularize(&mut net, wanted, job)? || fewer {
+                self.smooth(&mut net, wanted, job)?;
+            }
+        }
+        self.shorten(&mut net, wanted, job)?;
+        Ok(Ok(net))
+    }
+
+    /// Triangles between nodes of a lattice and of the border, paired.
+    fn pairs(&self, cells: &dyn SizeField, job: &Job) -> Outcome<Net> {
+        let quads = self.fit.face.elements == Elements::Quads;
+        let lattice = match () {
+            () if self.fit.face.method == Method::Quadtree => NodePlacement::Tree,
+            () if self.is_regular() => NodePlacement::SearchedSquares,
+            () => NodePlacement::Squares,
+        };
         let (chart_surface, outline) = (self.fit.chart, &self.halves.outline);
         let most = if quads { self.fit.most().div_ceil(4) } else { self.fit.most() };
         let task = Task { chart_surface, field: cells, outline, settings: self.fit.settings, lattice, most, limit_check: None };
@@ -108,21 +141,32 @@ impl NetFit<'_> {
         let normal: Vec<DVec3> = triangulation.xy.iter().map(|xy| chart_surface.spot(*xy).normal()).collect();
         let flat = SingleTriangles::flat(&triangulation, self.halves);
         let mate = pair(&triangulation, &normal, &flat, if quads { CELL_SINGLES } else { MIXED_SINGLES });
-        let mut net = Raw { triangulation: &triangulation, mate: &mate, flat: &flat, normal: &normal, halves: self.halves }.net();
+        let net = Raw { triangulation: &triangulation, mate: &mate, flat: &flat, normal: &normal, halves: self.halves }.net();
         debug_assert_eq!(net.check().and(net.check_upright()), Ok(()));
-        drop(triangulation);
-        self.smooth(&mut net, cells, job)?;
-        if quads {
-            Swapper::new(&mut net).swap();
-            debug_assert_eq!(net.check(), Ok(()));
-            self.smooth(&mut net, cells, job)?;
-            let Some(whole) = whole_sides(&net) else { return Ok(Err(NoMesh::Odd)) };
-            self.narrow_rows(&mut net, &whole, cells, job)?;
-            net = split(&net, &whole, chart_surface, wanted);
-            self.smooth(&mut net, wanted, job)?;
-        }
-        self.shorten(&mut net, wanted, job)?;
         Ok(Ok(net))
+    }
+
+    /// Whether few irregular nodes are asked for.
+    fn is_regular(&self) -> bool {
+        self.fit.face.elements == Elements::Quads && self.fit.face_input.input.plan.settings.regular()
+    }
+
+    /// Fills cavities about irregular nodes anew where that is asked for; whether any was.
+    fn regularize(&self, net: &mut Net, field: &dyn SizeField, job: &Job) -> Result<bool> {
+        let Some(plane) = self.fit.chart.plane().filter(|_| self.is_regular()) else { return Ok(false) };
+        regularize(net, &RegularInput { plane, field, always: self.fit.longest.always() }, job)
+    }
+
+    /// Takes out quads between irregular nodes; whether there were any.
+    fn collapse(&self, net: &mut Net, field: &dyn SizeField, job: &Job) -> Result<bool> {
+        for round in 0..COLLAPSE.max_rounds {
+            let left = collapse(net, self.fit.chart, field);
+            if left.is_empty() {
+                return Ok(round > 0);
+            }
+            Smoother::new(net, self.fit.chart, field).only(&left).smooth(self.fit.settings.smoothing_rounds, job)?;
+        }
+        Ok(true)
     }
 
     /// Rows of sides that are not halved get half as wide as others.
@@ -141,7 +185,8 @@ impl NetFit<'_> {
             let steps = if sides.contains(&(a.min(b), a.max(b))) { 1.0 } else { 2.0 };
             net.p[a].distance(net.p[b]) / (steps * longest.at(&net.p, a as u32).max(longest.at(&net.p, b as u32)))
         };
-        Smoother::new(net, self.fit.chart, cells).even_out(&over, NET_FIT.max_evening_rounds, job)
+        let sides = Sides { over: &over, always: 0.0 };
+        Smoother::new(net, self.fit.chart, cells).even_out(&sides, NET_FIT.max_evening_rounds, job)
     }
 
     /// Shortens long sides at the cost of their neighbours, and puts more quads across those that stay too long.
@@ -152,16 +197,17 @@ impl NetFit<'_> {
         let (longest, chart_surface) = (&self.fit.longest, self.fit.chart);
         let over =
             |net: &Net, a: usize, b: usize| net.p[a].distance(net.p[b]) / longest.at(&net.p, a as u32).max(longest.at(&net.p, b as u32));
-        Smoother::new(net, chart_surface, wanted).even_out(&over, NET_FIT.max_evening_rounds, job)?;
+        let sides = Sides { over: &over, always: longest.always() };
+        Smoother::new(net, chart_surface, wanted).even_out(&sides, NET_FIT.max_evening_rounds, job)?;
         for _ in 0..NET_FIT.max_opening_rounds {
-            let opened = open(net, chart_surface, wanted, &over);
+            let opened = open(net, chart_surface, wanted, &sides);
             if opened.is_empty() {
                 break;
             }
             let mut smoother = Smoother::new(net, chart_surface, wanted).only(&opened);
             smoother.smooth(self.fit.settings.smoothing_rounds, job)?;
             smoother.repair(NET_FIT.min_quality, NET_FIT.max_repair_rounds, job)?;
-            smoother.even_out(&over, NET_FIT.max_evening_rounds, job)?;
+            smoother.even_out(&sides, NET_FIT.max_evening_rounds, job)?;
         }
         Ok(())
     }
@@ -215,12 +261,16 @@ impl NetFit<'_> {
     fn too_long(&self, net: &Net) -> Worst {
         let longest = &self.fit.longest;
         let mut worst = Worst { over: 0.0, at: DVec3::ZERO, limit: MeshLimit::Size };
+        let always = longest.always();
         for f in 0..net.face.len() {
             let c = net.corners(f);
             for k in 0..c.len() {
                 let (a, b) = (c[k], c[(k + 1) % c.len()]);
                 // Each side once; those between border nodes are given.
                 if a > b || a < net.fixed && b < net.fixed {
+                    continue;
+                }
+                if net.p[a as usize].distance_squared(net.p[b as usize]) <= always * always {
                     continue;
                 }
                 let allowed = longest.at(&net.p, a).max(longest.at(&net.p, b));

@@ -6,9 +6,10 @@ use crate::base::job;
 use crate::base::math::angle_between;
 use crate::mesh::chart::halves::NONE;
 use crate::mesh::chart::parametric_surface::{ParametricSurface, SizeField, foot_spot};
+use crate::mesh::quad::evening::Sides;
 use crate::mesh::quad::net::Net;
 use crate::mesh::quad::settings::OPENING;
-use crate::mesh::quad::smooth::{Over, Smoother};
+use crate::mesh::quad::smooth::Smoother;
 
 /// A node to be opened: the end of its long side, and the two nodes that get the quad's other corners.
 struct Opening {
@@ -19,8 +20,8 @@ struct Opening {
 }
 
 /// Opens nodes at sides that are longer than allowed, no two of them beside each other; gives the nodes of the new quads.
-pub fn open(net: &mut Net, chart_surface: &dyn ParametricSurface, field: &dyn SizeField, over: &Over) -> Vec<u32> {
-    let mut all = openings(net, chart_surface, field, over);
+pub fn open(net: &mut Net, chart_surface: &dyn ParametricSurface, field: &dyn SizeField, sides: &Sides) -> Vec<u32> {
+    let mut all = openings(net, chart_surface, field, sides);
     all.sort_by(|a, b| b.over.total_cmp(&a.over).then((a.node, a.towards).cmp(&(b.node, b.towards))));
     let mut faces_of: Vec<Vec<u32>> = vec![Vec::new(); if all.is_empty() { 0 } else { net.p.len() }];
     if !all.is_empty() {
@@ -59,7 +60,7 @@ pub fn open(net: &mut Net, chart_surface: &dyn ParametricSurface, field: &dyn Si
 }
 
 /// The possible openings, at either end of each side that is too long.
-fn openings(net: &mut Net, chart_surface: &dyn ParametricSurface, field: &dyn SizeField, over: &Over) -> Vec<Opening> {
+fn openings(net: &mut Net, chart_surface: &dyn ParametricSurface, field: &dyn SizeField, sides: &Sides) -> Vec<Opening> {
     let smoother = Smoother::new(net, chart_surface, field);
     let net = &*smoother.net;
     let mut found = Vec::new();
@@ -69,7 +70,7 @@ fn openings(net: &mut Net, chart_surface: &dyn ParametricSurface, field: &dyn Si
             if c[3] == NONE || a > b || a < net.fixed as usize && b < net.fixed as usize {
                 continue;
             }
-            let long = over(net, a, b);
+            let long = if net.p[a].distance_squared(net.p[b]) <= sides.always * sides.always { 0.0 } else { (sides.over)(net, a, b) };
             if long <= 1.0 {
                 continue;
             }

@@ -4,12 +4,13 @@
 use std::ops::Range;
 
 use crate::mesh::quad::pair::SingleTriangles;
+use crate::mesh::size::border_spacing::SQUARE_SPACING;
 use crate::mesh::tri::longest::LONGEST;
 use crate::mesh::tri::optimize::OptimizeSettings;
 use crate::mesh::tri::optimize_settings::TREE_FACE;
 
 /// Distance of the nodes of the lattice over the size.
-pub(crate) const SPACING: f64 = 0.85;
+pub(crate) const SPACING: f64 = SQUARE_SPACING;
 
 /// Optimization of a face of quads.
 pub(crate) const QUAD_FACE: OptimizeSettings =
@@ -100,6 +101,37 @@ pub(crate) struct RowCosts {
 
 pub(crate) const ROW_COSTS: RowCosts =
     RowCosts { straight: 2, corner: 5, triangle: 6, flat_triangle: 60, crossed_again: 40, max_permuted_ends: 6 };
+
+/// Quads taken out between irregular nodes (`collapse.rs`).
+pub(crate) struct CollapseSettings {
+    /// Largest number of faces round both nodes together.
+    pub(crate) max_valences: i64,
+    /// Quality of the faces left from which on they may be worse than before.
+    pub(crate) min_quality: f64,
+    /// Largest number of rounds.
+    pub(crate) max_rounds: usize,
+}
+
+pub(crate) const COLLAPSE: CollapseSettings = CollapseSettings { max_valences: 8, min_quality: 0.55, max_rounds: 3 };
+
+/// Cavities about irregular nodes filled anew (`regular.rs`).
+pub(crate) struct RegularSettings {
+    /// Largest numbers of quads of a cavity, in turn.
+    pub(crate) max_faces: [usize; 3],
+    /// Largest number of rounds over all irregular nodes with each.
+    pub(crate) max_rounds: usize,
+    /// Quality of the quads of a pattern from which on they may be worse than those before.
+    pub(crate) min_quality: f64,
+    /// Least side of a quad.
+    pub(crate) min_side: f64,
+    /// Number of sweeps over the nodes of a pattern.
+    pub(crate) sweeps: usize,
+    /// Work of a face of a cavity, in evaluations of the surface.
+    pub(crate) face_work: u64,
+}
+
+pub(crate) const REGULAR: RegularSettings =
+    RegularSettings { max_faces: [60, 250, 1000], max_rounds: 3, min_quality: 0.65, min_side: 0.4, sweeps: 12, face_work: 4 };
 
 /// Opening of nodes at long sides (`open.rs`).
 pub(crate) struct OpeningSettings {

@@ -5,24 +5,18 @@ use glam::{DVec2, DVec3};
 
 use crate::base::fault::Result;
 use crate::base::job::Job;
-use crate::base::work;
 use crate::mesh::chart::halves::NONE;
-use crate::mesh::chart::parametric_surface::{ParametricSurface, SizeField, foot_near, foot_spot};
+use crate::mesh::chart::parametric_surface::{ParametricSurface, SizeField, Spot, foot_near, foot_spot};
 use crate::mesh::quad::net::{Net, least_quality};
+use crate::mesh::quad::plane;
 use crate::mesh::quad::settings::SMOOTHING;
-
-/// Length of the side between two nodes over what is allowed there.
-pub type Over<'a> = dyn Fn(&Net, usize, usize) -> f64 + 'a;
-
-/// The quality of some faces of a net together.
-pub type Score<'a> = dyn Fn(&Net, &[u32]) -> f64 + 'a;
 
 /// A place of a node.
 #[derive(Clone, Copy)]
-struct NodePosition {
-    xy: DVec2,
-    p: DVec3,
-    normal: DVec3,
+pub(super) struct NodePosition {
+    pub(super) xy: DVec2,
+    pub(super) p: DVec3,
+    pub(super) normal: DVec3,
 }
 
 /// Moves the nodes of a net.
@@ -31,13 +25,15 @@ pub struct Smoother<'a> {
     pub net: &'a mut Net,
     chart_surface: &'a dyn ParametricSurface,
     field: &'a dyn SizeField,
+    /// The origin of the chart, where it is the plane of the face itself.
+    plane: Option<Spot>,
     /// Faces round each node: from `first[n]` to the next one.
     first: Vec<u32>,
     of: Vec<u32>,
     /// Nodes that may have to move.
-    active: Vec<bool>,
+    pub(super) active: Vec<bool>,
     /// Nodes that moved: elements round others are unchanged.
-    fresh: Vec<bool>,
+    pub(super) fresh: Vec<bool>,
 }
 
 impl<'a> Smoother<'a> {
@@ -55,7 +51,7 @@ impl<'a> Smoother<'a> {
             next[node] += 1;
         }
         let (active, fresh) = (vec![true; n], vec![true; n]);
-        Self { net, chart_surface, field, first, of, active, fresh }
+        Self { net, chart_surface, field, plane: chart_surface.plane(), first, of, active, fresh }
     }
 
     /// Only these nodes and those round them may have to move.
@@ -76,28 +72,50 @@ impl<'a> Smoother<'a> {
         self.faces(node).len()
     }
 
-    /// The least quality round a node.
-    fn worst(&self, node: usize) -> f64 {
-        least_quality(self.net, self.faces(node))
+    /// The quality of a face.
+    pub(super) fn quality(&self, f: usize) -> f64 {
+        if self.plane.is_some() { plane::quality(self.net, f) } else { self.net.quality(f) }
     }
 
-    fn place(&self, node: usize) -> NodePosition {
+    /// The least quality of some faces of the net.
+    pub(super) fn least(&self) -> fn(&Net, &[u32]) -> f64 {
+        if self.plane.is_some() { plane::least_quality } else { least_quality }
+    }
+
+    /// The least quality round a node.
+    pub(super) fn worst(&self, node: usize) -> f64 {
+        self.least()(self.net, self.faces(node))
+    }
+
+    pub(super) fn place(&self, node: usize) -> NodePosition {
         NodePosition { xy: self.net.xy[node], p: self.net.p[node], normal: self.net.normal[node] }
     }
 
-    fn put(&mut self, node: usize, place: NodePosition) {
+    pub(super) fn put(&mut self, node: usize, place: NodePosition) {
         (self.net.xy[node], self.net.p[node], self.net.normal[node]) = (place.xy, place.p, place.normal);
     }
 
     /// The foot of a point near a node.
-    fn foot(&self, node: usize, p: DVec3) -> NodePosition {
+    pub(super) fn foot(&self, node: usize, p: DVec3) -> NodePosition {
+        if let Some(plane) = &self.plane {
+            let off = p - plane.p;
+            return self.in_plane(node, plane, DVec2::new(off.dot(plane.dx), off.dot(plane.dy)));
+        }
         let (xy, spot) = foot_spot(self.chart_surface, self.net.xy[node], p);
         NodePosition { xy, p: spot.p, normal: spot.normal() }
     }
 
+    /// A place of the plane for a node.
+    fn in_plane(&self, node: usize, plane: &Spot, xy: DVec2) -> NodePosition {
+        let xy = self.chart_surface.clamp(xy);
+        NodePosition { xy, p: plane.p + plane.dx * xy.x + plane.dy * xy.y, normal: self.net.normal[node] }
+    }
+
     /// Completes the move of a node.
-    fn settle(&mut self, node: usize) {
-        self.net.size[node] = self.field.size(self.net.xy[node], self.net.p[node]);
+    pub(super) fn settle(&mut self, node: usize) {
+        if !self.field.is_even() {
+            self.net.size[node] = self.field.size(self.net.xy[node], self.net.p[node]);
+        }
         self.wake(node);
     }
 
@@ -121,7 +139,14 @@ impl<'a> Smoother<'a> {
                 if node % SMOOTHING.nodes_per_check == 0 {
                     job.go_on()?;
                 }
-                if std::mem::take(&mut self.active[node]) && self.relax(node) {
+                if !std::mem::take(&mut self.active[node]) {
+                    continue;
+                }
+                let moves = match self.plane {
+                    Some(plane) => self.relax_in_plane(node, &plane),
+                    None => self.relax(node),
+                };
+                if moves {
                     moved = true;
                     self.settle(node);
                 }
@@ -133,8 +158,14 @@ impl<'a> Smoother<'a> {
         Ok(())
     }
 
-    /// The area-weighted mean of the centroids round a node, with the same mean in the chart; elements where lengths are short
-    /// weigh more.
+    /// How much the area of a face weighs: elements where lengths are short weigh more.
+    fn share(&self, f: usize) -> f64 {
+        let c = self.net.corners(f);
+        let size = c.iter().map(|c| self.net.size[*c as usize]).sum::<f64>() / c.len() as f64;
+        1.0 / (size * size * size * size)
+    }
+
+    /// The area-weighted mean of the centroids round a node, with the same mean in the chart.
     fn centre(&self, node: usize) -> Option<(DVec3, DVec2)> {
         let (mut sum, mut place, mut weights) = (DVec3::ZERO, DVec2::ZERO, 0.0);
         let (here, xy) = (self.net.p[node], self.net.xy[node]);
@@ -144,8 +175,7 @@ impl<'a> Smoother<'a> {
             let k = c.iter().position(|c| *c as usize == node)?;
             let at = |i: usize| c[(k + i) % n] as usize;
             let (p, of) = (&self.net.p, &self.net.xy);
-            let size = c.iter().map(|c| self.net.size[*c as usize]).sum::<f64>() / n as f64;
-            let share = 1.0 / (size * size * size * size);
+            let share = self.share(*f as usize);
             for i in 1..n - 1 {
                 let (a, b) = (at(i), at(i + 1));
                 let weight = (p[a] - here).cross(p[b] - here).length() * share;
@@ -188,173 +218,31 @@ impl<'a> Smoother<'a> {
         false
     }
 
-    /// Shortens long sides at the cost of their neighbours: nodes move towards those they are too far from, while elements keep a least
-    /// quality. `over` is the length of a side over what is allowed, of two places.
-    pub fn even_out(&mut self, over: &Over, rounds: usize, job: &Job) -> Result<()> {
-        self.active.copy_from_slice(&self.fresh);
-        for _ in 0..rounds {
-            let mut moved = false;
-            for node in self.net.fixed as usize..self.net.p.len() {
-                if node % SMOOTHING.nodes_per_check == 0 {
-                    job.go_on()?;
-                }
-                if std::mem::take(&mut self.active[node]) && self.pull(node, over) {
-                    moved = true;
-                    self.settle(node);
-                }
-            }
-            if !moved {
-                break;
-            }
-        }
-        Ok(())
-    }
-
-    /// Ends of the sides at a node.
-    fn neighbours(&self, node: usize) -> impl Iterator<Item = usize> + '_ {
-        self.faces(node).iter().filter_map(move |f| {
-            let c = self.net.corners(*f as usize);
-            c.iter().position(|c| *c as usize == node).map(|k| c[(k + 1) % c.len()] as usize)
-        })
-    }
-
-    /// The shortest side at a node.
-    fn shortest(&self, node: usize) -> f64 {
-        self.neighbours(node).map(|other| self.net.p[node].distance(self.net.p[other])).fold(f64::INFINITY, f64::min)
-    }
-
-    /// One move of a node with a long side.
-    fn pull(&mut self, node: usize, over: &Over) -> bool {
-        let tension = |net: &Net, other: usize| over(net, node, other);
-        let (mut sum, mut weights, mut most) = (DVec3::ZERO, 0.0, 0.0_f64);
-        for other in self.neighbours(node) {
-            let t = tension(self.net, other);
-            let weight = t * t * t * t * t * t;
-            most = most.max(t);
-            sum += self.net.p[other] * weight;
-            weights += weight;
-        }
-        if most <= SMOOTHING.max_side_ratio {
+    /// The same where the chart is the plane.
+    fn relax_in_plane(&mut self, node: usize, plane: &Spot) -> bool {
+        let share_of = |f: usize| self.share(f);
+        let Some(to) = plane::centre(self.net, node, self.faces(node), &share_of, self.field.is_even()) else { return false };
+        let start = self.net.xy[node];
+        let still = SMOOTHING.min_move * self.net.size[node];
+        if start.distance_squared(to) < still * still {
             return false;
         }
-        let strain =
-            |this: &Self| this.neighbours(node).map(|other| tension(this.net, other)).map(|t| t * t * t * t * t * t * t * t).sum::<f64>();
-        let (start, before, worst) = (self.place(node), strain(self), self.worst(node));
-        let short = self.shortest(node).min(SMOOTHING.min_side * self.net.size[node]);
-        let mut step = sum / weights - start.p;
+        let mut before = None;
+        let mut share = 1.0;
         for _ in 0..3 {
-            let place = self.foot(node, start.p + step);
-            self.put(node, place);
-            if strain(self) < before * (1.0 - SMOOTHING.min_gain)
-                && self.worst(node) >= worst.min(SMOOTHING.min_evened_quality)
-                && self.shortest(node) >= short
-            {
+            let place = self.in_plane(node, plane, start.lerp(to, share));
+            self.net.xy[node] = place.xy;
+            let good = plane::reach(self.net, self.faces(node), SMOOTHING.min_smoothed_quality) || {
+                let after = self.worst(node);
+                self.net.xy[node] = start;
+                after >= *before.get_or_insert_with(|| self.worst(node))
+            };
+            if good {
+                self.put(node, place);
                 return true;
             }
-            step *= 0.5;
+            share *= 0.4;
         }
-        self.put(node, start);
         false
     }
-
-    /// Moves corners of elements below `wanted` to where the worst element round them is best, the worst ones first, for so
-    /// many rounds at most.
-    pub fn repair(&mut self, wanted: f64, rounds: usize, job: &Job) -> Result<()> {
-        // Nodes round which nothing moved since they were tried: they would stay where they are once more.
-        let mut tried = vec![false; self.net.p.len()];
-        for _ in 0..rounds {
-            let changed = |f: &usize| self.net.corners(*f).iter().any(|n| self.fresh[*n as usize]);
-            let quality = (0..self.net.face.len()).filter(changed).map(|f| (self.net.quality(f), f));
-            let mut bad: Vec<(f64, usize)> = quality.filter(|(q, _)| *q < wanted).collect();
-            bad.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-            let mut gained = false;
-            for (_, f) in bad {
-                job.go_on()?;
-                for n in self.net.face[f] {
-                    if n == NONE || n < self.net.fixed || tried[n as usize] || self.net.quality(f) >= wanted {
-                        continue;
-                    }
-                    let before = self.net.xy[n as usize];
-                    gained |= self.climb(n as usize, &least_quality, f64::INFINITY);
-                    tried[n as usize] = true;
-                    if self.net.xy[n as usize] != before {
-                        let round = self.faces(n as usize).iter().flat_map(|f| self.net.corners(*f as usize));
-                        round.for_each(|n| tried[*n as usize] = false);
-                    }
-                }
-            }
-            if !gained {
-                break;
-            }
-        }
-        Ok(())
-    }
-
-    /// Searches round a node for the place where the `score` of the faces round it is largest, or `enough`; whether it moved.
-    pub fn climb(&mut self, node: usize, score: &Score, enough: f64) -> bool {
-        work::spend(SMOOTHING.search_work);
-        let size = self.mean_side(node);
-        let start = score(self.net, self.faces(node));
-        let (mut best, mut place) = (start, self.place(node));
-        let mut reach = SMOOTHING.search_steps.end;
-        while reach > SMOOTHING.search_steps.start && best < enough {
-            let (ahead, aside) = self.frame(node, place);
-            let (mut found, short) = (false, self.shortest(node).min(SMOOTHING.min_side * size));
-            for (x, y) in EIGHT {
-                let trial = self.foot(node, place.p + (ahead * x + aside * y) * (reach * size));
-                self.put(node, trial);
-                let now = score(self.net, self.faces(node));
-                if now > best + SMOOTHING.min_gain * reach && self.shortest(node) >= short {
-                    (best, place, found) = (now, trial, true);
-                    break;
-                }
-            }
-            self.put(node, place);
-            if !found {
-                reach *= 0.5;
-            }
-        }
-        if best > start + SMOOTHING.min_gain {
-            self.settle(node);
-        }
-        best > start + SMOOTHING.min_gain
-    }
-
-    /// Two directions along the surface, the first towards a neighbour.
-    fn frame(&self, node: usize, place: NodePosition) -> (DVec3, DVec3) {
-        let normal = if place.normal == DVec3::ZERO { DVec3::Z } else { place.normal };
-        let c = self.faces(node).first().map_or(&[][..], |f| self.net.corners(*f as usize));
-        let next = c.iter().position(|c| *c as usize == node).map_or(node, |k| c[(k + 1) % c.len()] as usize);
-        let ahead = (self.net.p[next] - place.p).reject_from_normalized(normal).try_normalize();
-        let ahead = ahead.unwrap_or_else(|| normal.any_orthonormal_vector());
-        (ahead, normal.cross(ahead))
-    }
-
-    /// Mean length of the sides round a node.
-    fn mean_side(&self, node: usize) -> f64 {
-        let (mut sum, mut n) = (0.0, 0.0);
-        for f in self.faces(node) {
-            let c = self.net.corners(*f as usize);
-            if let Some(k) = c.iter().position(|c| *c as usize == node) {
-                sum += self.net.p[node].distance(self.net.p[c[(k + 1) % c.len()] as usize]);
-                n += 1.0;
-            }
-        }
-        sum / n
-    }
 }
-
-/// Directions of a search.
-const EIGHT: [(f64, f64); 8] = {
-    const DIAGONAL: f64 = std::f64::consts::FRAC_1_SQRT_2;
-    [
-        (1.0, 0.0),
-        (-1.0, 0.0),
-        (0.0, 1.0),
-        (0.0, -1.0),
-        (DIAGONAL, DIAGONAL),
-        (-DIAGONAL, -DIAGONAL),
-        (DIAGONAL, -DIAGONAL),
-        (-DIAGONAL, DIAGONAL),
-    ]
-};

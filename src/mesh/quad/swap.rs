@@ -172,7 +172,7 @@ impl<'a> Swapper<'a> {
         if beyond != NONE {
             self.net.across[beyond as usize / 4][beyond as usize % 4] = (4 * f + 3) as u32;
         }
-        self.remove(g);
+        self.net.remove(g);
         true
     }
 
@@ -186,24 +186,6 @@ impl<'a> Swapper<'a> {
             if k + 1 < places.len() {
                 (net.across[f][k], net.mid[f][k]) = (beyond, mid);
                 net.locked[f] |= u8::from(locked) << k;
-                if beyond != NONE {
-                    net.across[beyond as usize / 4][beyond as usize % 4] = (4 * f + k) as u32;
-                }
-            }
-        }
-    }
-
-    /// Takes a face out; the last one gets its number.
-    fn remove(&mut self, f: usize) {
-        let net = &mut *self.net;
-        let last = net.face.len() - 1;
-        net.face.swap_remove(f);
-        net.across.swap_remove(f);
-        net.mid.swap_remove(f);
-        net.locked.swap_remove(f);
-        if f < last {
-            for k in 0..4 {
-                let beyond = net.across[f][k];
                 if beyond != NONE {
                     net.across[beyond as usize / 4][beyond as usize % 4] = (4 * f + k) as u32;
                 }

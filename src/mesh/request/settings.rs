@@ -184,7 +184,7 @@ mesh_settings! {
     /// Settings of a whole mesh: `mesh m of things { … }`.
     MeshSettings {
         /// Target edge length: never exceeded on borders, by at most 5 % inside free faces. Nodes of free faces, and of borders that
-        /// only free faces share, are 0.8 of it apart.
+        /// only free faces share, are 0.8 of it apart, of quads 0.85.
         size: f64, Takes::Size, POSITIVE, "a 20th of the diagonal of what is meshed", ["mesh::size::sizing::Sizing::new"];
         /// Largest distance between mesh and surface; like all lengths of a mesh it may be a percentage of the diagonal of the box
         /// around what is meshed: `0.01%`.
@@ -211,6 +211,10 @@ mesh_settings! {
         smooth: u32, Takes::Count, ANY,
             "5; 4 within `chord_error` or `angle_error`; 8 for quads and where lengths grow from short pieces; 30 with `quadtree`",
             ["mesh::tri", "mesh::quad"];
+        /// Fewer irregular nodes, those inside with other than four quads, in plane faces that are meshed freely with quads: more holes are fitted
+        /// into the rows of the others, and rows are searched that need no such node. Takes several times as long.
+        regular: bool, Takes::Flag, ANY, "false" => false,
+            ["mesh::quad::regular", "mesh::tri::build::NodePlacement"];
         /// Kind of elements.
         elements: Elements, Takes::Word(Elements::WORDS), ANY, "triangles" => Elements::Triangles, ["mesh::size::face_settings::apply_rules"];
         /// 1, or 2 with mid nodes.

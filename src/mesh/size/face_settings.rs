@@ -3,10 +3,11 @@
 use crate::base::par;
 use crate::mesh::border::layout::{Face, Layout};
 use crate::mesh::request::input::Input;
+use crate::mesh::request::methods::Method;
 use crate::mesh::request::plan::Target;
 use crate::mesh::request::size_requests::least_on;
 use crate::mesh::request::sources::Sources;
-use crate::mesh::size::border_spacing::SPACING;
+use crate::mesh::size::border_spacing::{SPACING, SQUARE_SPACING};
 use crate::mesh::size::rule_effects::RuleEffects;
 
 /// Gives faces their size, elements and method: those of the last rule on the face, else on its surface, else of the mesh.
@@ -88,19 +89,29 @@ pub(super) fn refine_mapped(input: &Input, layout: &mut Layout, sources: &Source
     layout.faces.iter().map(|face| face.size.1.filter(|clause| *clause >= first && !face.free)).collect()
 }
 
-/// The size of each segment by its faces: the least of theirs, `size` where it has none. Steps on borders of freely grown
-/// triangles alone are as long as distances of nodes inside: triangles between rows of one length are the best ones.
+/// The size of each segment by its faces: the least of theirs, `size` where it has none. Steps on borders of faces that are grown alone
+/// are as long as distances of nodes inside: elements between rows of one length are the best ones.
 pub(super) fn sizes_of_segments(layout: &Layout, size: f64) -> Vec<(f64, Option<usize>)> {
     let mut grown = vec![true; layout.pieces.segments.len()];
-    layout.faces.iter().filter(|f| !f.is_grown()).flat_map(Face::segments).for_each(|k| grown[k] = false);
+    layout.faces.iter().filter(|f| grown_spacing(f).is_none()).flat_map(Face::segments).for_each(|k| grown[k] = false);
     let mut own: Vec<Option<(f64, Option<usize>)>> = vec![None; grown.len()];
     for face in &layout.faces {
         for k in face.segments() {
-            let step = (if grown[k] { face.size.0 * SPACING } else { face.size.0 }, face.size.1);
+            let spacing = grown_spacing(face).filter(|_| grown[k]).unwrap_or(1.0);
+            let step = (face.size.0 * spacing, face.size.1);
             if own[k].is_none_or(|least| step.0 < least.0) {
                 own[k] = Some(step);
             }
         }
     }
     own.into_iter().map(|own| own.unwrap_or((size, None))).collect()
+}
+
+/// Distance of the nodes of a grown lattice over the size; `None` of faces that are made otherwise.
+fn grown_spacing(face: &Face) -> Option<f64> {
+    match () {
+        () if face.is_grown() => Some(SPACING),
+        () if face.takes_quads() && face.method != Method::Quadtree => Some(SQUARE_SPACING),
+        () => None,
+    }
 }

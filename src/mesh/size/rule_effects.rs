@@ -1,7 +1,7 @@
 //! Which rules, clauses and settings have an effect, and why the others have none.
 
 use crate::base::origin::Origin;
-use crate::mesh::border::layout::Layout;
+use crate::mesh::border::layout::{Face, Layout};
 use crate::mesh::data::face_mesh::FaceMesh;
 use crate::mesh::request::decider::Why;
 use crate::mesh::request::input::Input;
@@ -11,11 +11,15 @@ use crate::mesh::size::border_spacing::BorderSpacings;
 use crate::mesh::size::remark::Remark;
 
 /// Settings of the whole mesh that act on free faces only; they follow the clauses in [`RuleEffects`].
-pub(crate) const FREE_ONLY: [&str; 2] = ["smooth", "growth"];
+pub(crate) const FREE_ONLY: [&str; 3] = ["smooth", "growth", "regular"];
 
 /// Where one of them is written.
 pub(crate) fn free_only_origin(plan: &Plan, key: &str) -> Option<Origin> {
-    if key == "smooth" { plan.settings.smooth.map(|n| n.1) } else { plan.settings.growth.map(|g| g.1) }
+    match key {
+        "smooth" => plan.settings.smooth.map(|n| n.1),
+        "growth" => plan.settings.growth.map(|g| g.1),
+        _ => plan.settings.regular.map(|r| r.1),
+    }
 }
 
 /// Settings of which one rule may override another.
@@ -58,11 +62,18 @@ impl RuleEffects {
     pub(super) fn check_free_only(&mut self, input: &Input, layout: &Layout) {
         let plan = input.plan;
         let free = layout.faces.iter().any(|face| face.free);
+        let is_plane = |face: &Face| input.model.surfaces[face.surface.index()].surface.is_flat();
+        let plane_quads = layout.faces.iter().any(|face| face.takes_quads() && is_plane(face));
         let first = plan.rules.len() + plan.refines.len();
         for (k, key) in FREE_ONLY.into_iter().enumerate() {
-            let idle = free_only_origin(plan, key).is_some() && !free && (key == "smooth" || plan.refines.is_empty());
+            let (acts, on) = match key {
+                "smooth" => (free, "freely meshed faces"),
+                "growth" => (free || !plan.refines.is_empty(), "freely meshed faces"),
+                _ => (plane_quads, "freely meshed plane faces of quads"),
+            };
+            let idle = free_only_origin(plan, key).is_some() && !acts;
             self.used[first + k] = !idle;
-            self.inapplicable[first + k] = idle.then(|| format!("`{key}` is for freely meshed faces, and there is none here"));
+            self.inapplicable[first + k] = idle.then(|| format!("`{key}` is for {on}, and there is none here"));
         }
     }
 

@@ -5,7 +5,7 @@ use crate::base::limits::{MESH_ELEMENTS, MESH_STEPS};
 use crate::base::par;
 use crate::base::tolerance::WHOLE_NUMBER;
 use crate::mesh::border::counts::steps;
-use crate::mesh::border::layout::Layout;
+use crate::mesh::border::layout::{Face, Layout};
 use crate::mesh::deviation::curve::wanted_steps;
 use crate::mesh::request::input::Input;
 use crate::mesh::request::limits::Limits;
@@ -28,6 +28,10 @@ pub const MOST: u32 = MESH_ELEMENTS as u32;
 
 /// Counts under a bias up to which each is tried.
 const MAX_BIASED: u32 = 1 << 20;
+
+/// Steps of a ring in a plane face of quads are a multiple of this: two for each side of a cell, and as many cells along one side of a
+/// hole as along the other.
+const STEPS_OF_RING: u32 = 4;
 
 /// What decides the steps of one segment.
 #[derive(Clone, Copy, Debug)]
@@ -105,6 +109,7 @@ impl Sizing {
         let biases: Vec<f64> = settings.iter().map(|s| s.bias).collect();
         let apart = least_counts::to_keep_apart(layout, near);
         let least = least_counts::for_limits(input, layout, &biases, &self.spacings, recall)?;
+        let rings = rings_of_squares(input, layout);
         for (k, &SegmentSettings { count, size, bias, .. }) in settings.iter().enumerate() {
             let least = least[k].max(apart[k]);
             let demand = match (&self.spacings[k], biased[k]) {
@@ -115,7 +120,9 @@ impl Sizing {
             if count.is_none() && least <= MESH_STEPS {
                 self.refuse_below_floor(input, layout, k, least, apart[k])?;
             }
-            self.decisions.push(Decision { count, size, bias, least, demand: demand.max(least) });
+            let demand = demand.max(least);
+            let demand = if rings[k] && demand < MAX_COUNT { demand.next_multiple_of(STEPS_OF_RING) } else { demand };
+            self.decisions.push(Decision { count, size, bias, least, demand });
         }
         Ok(())
     }
@@ -202,6 +209,22 @@ impl Sizing {
             (a, b) => a.or(b),
         };
     }
+}
+
+/// Rings round and in plane faces of free quads.
+fn rings_of_squares(input: &Input, layout: &Layout) -> Vec<bool> {
+    let mut found = vec![false; layout.pieces.segments.len()];
+    let is_flat = |face: &&Face| input.model.surfaces[face.surface.index()].surface.is_flat();
+    let ring = |k: &usize| layout.pieces.segments[*k].ends.0 == layout.pieces.segments[*k].ends.1;
+    layout
+        .faces
+        .iter()
+        .filter(|face| face.takes_quads())
+        .filter(is_flat)
+        .flat_map(Face::segments)
+        .filter(ring)
+        .for_each(|k| found[k] = true);
+    found
 }
 
 /// Steps of a segment under a bias, none of them longer than the size or what is wanted along it.

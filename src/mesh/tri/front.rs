@@ -4,6 +4,8 @@
 //! near to a known point or to the border is dropped. On a plane with one size this is the regular lattice; on curved
 //! surfaces and where sizes change, neighbouring fronts meet at distances that smoothing evens out.
 
+mod square_hole;
+mod square_lattice;
 pub mod squares;
 pub mod triangles;
 
@@ -42,6 +44,8 @@ pub struct FrontInput<'a> {
     pub seeds: &'a [(DVec2, DVec3)],
     /// What grows.
     pub cell: LatticeCell,
+    /// Whether to search for a lattice of squares with as many holes as have room in it.
+    pub search: bool,
     /// Most nodes.
     pub most: usize,
 }
@@ -92,7 +96,9 @@ struct Front<'a> {
     within: (DVec2, DVec2),
     /// Nodes of the first row of squares.
     row: u32,
-    /// Their directions from the border.
+    /// Nodes from there to here are those of a lattice of squares that was placed as a whole.
+    lattice_end: u32,
+    /// Directions of nodes of the first row from the border.
     arms: Vec<DVec3>,
 }
 
@@ -112,6 +118,7 @@ pub fn grow(input: &FrontInput, job: &Job) -> Result<PlacedNodes> {
         steps: [1.0; 2],
         within: outline.xy.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), xy| (l.min(*xy), h.max(*xy))),
         row: 0,
+        lattice_end: 0,
         arms: Vec::new(),
     };
     front.border();

@@ -56,6 +56,11 @@ impl<'a> Longest<'a> {
         self
     }
 
+    /// How long sides may be anywhere, model units; 0 where something is refined.
+    pub(crate) fn always(&self) -> f64 {
+        if self.rules.is_empty() { self.inside } else { 0.0 }
+    }
+
     /// How long sides at a place may be by the wanted sizes.
     fn wanted(&self, p: DVec3) -> f64 {
         if self.rules.is_empty() {

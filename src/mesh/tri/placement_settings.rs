@@ -98,6 +98,55 @@ pub(crate) const SQUARE_ROWS: SquareRowSettings = SquareRowSettings {
     max_perpendicular_cosine: 0.02,
 };
 
+/// Holes of plane faces as rectangles of a lattice of squares (`front/square_lattice.rs`). Lengths are steps of the lattice.
+pub(crate) struct SquareHoleSettings {
+    /// Least number of steps of a border that becomes a rectangle.
+    pub(crate) min_steps: usize,
+    /// Distance up to which the lattice is moved, over the largest way that a node of it has to go.
+    pub(crate) reach: f64,
+    /// Distance from other borders in which the lattice is not moved.
+    pub(crate) rows_beside_border: f64,
+    /// Largest number of nodes in the box round a face over that inside its outer loop.
+    pub(crate) max_box_over_area: f64,
+    /// Number of nodes up to which it may be more.
+    pub(crate) small_box: f64,
+    /// Least wanted length beside a hole.
+    pub(crate) min_wanted: f64,
+    /// Least wanted length where the lattice has nodes that are not moved for a hole.
+    pub(crate) min_wanted_elsewhere: f64,
+    /// Least distance of other nodes from those of the lattice: one in the middle of a cell that was stretched is nearer.
+    pub(crate) min_spacing_beside: f64,
+    /// Number of sweeps that spread the moves.
+    pub(crate) sweeps: usize,
+    /// Share of the way to the mean of its neighbours that a node goes in a sweep.
+    pub(crate) relaxation: f64,
+    /// Largest number of nodes laid in a search for other rectangles.
+    pub(crate) max_search: usize,
+    /// Number of rows about a hole whose cells are looked at.
+    pub(crate) scored_rows: i32,
+    /// Least sine of a corner of a cell.
+    pub(crate) min_quality: f64,
+    /// Least side of a cell.
+    pub(crate) min_side: f64,
+}
+
+pub(crate) const SQUARE_HOLES: SquareHoleSettings = SquareHoleSettings {
+    min_steps: 4,
+    reach: 3.0,
+    rows_beside_border: 1.5,
+    max_box_over_area: 8.0,
+    small_box: 10_000.0,
+    min_wanted: 0.4,
+    min_wanted_elsewhere: 0.85,
+    min_spacing_beside: 0.95,
+    sweeps: 12,
+    relaxation: 1.4,
+    max_search: 40_000_000,
+    scored_rows: 2,
+    min_quality: 0.3,
+    min_side: 0.3,
+};
+
 /// Placement of nodes at the corners of a quadtree (`quadtree.rs`).
 pub(crate) struct QuadtreeSettings {
     /// Side of a cell: its diagonal is then hardly longer than a side may be.

@@ -4,8 +4,9 @@
 use glam::{DVec2, DVec3};
 
 use crate::base::math;
+use crate::mesh::tri::front::square_lattice::{LatticeFrame, SquareLattice};
 use crate::mesh::tri::front::{Front, FrontStep, STRAIGHT};
-use crate::mesh::tri::placement_settings::{FRONT, SQUARE_ROWS};
+use crate::mesh::tri::placement_settings::{FRONT, SQUARE_HOLES, SQUARE_ROWS};
 
 /// A right angle, radians.
 const RIGHT: f64 = std::f64::consts::FRAC_PI_2;
@@ -33,7 +34,8 @@ impl Front<'_> {
         let mut before = vec![u32::MAX; outline.p.len()];
         outline.loops.iter().for_each(|e| before[e[1] as usize] = e[0]);
         let mut first = None;
-        for &[a, b] in &outline.loops {
+        let lattice = self.lattice(&longest);
+        for &[a, b] in outline.loops.iter().filter(|e| lattice.as_ref().is_none_or(|lattice| !lattice.fits(e[0]))) {
             let Some(from) = outline.p.get(before[a as usize] as usize).copied() else { continue };
             let here = self.grown.p.len() as u32;
             self.place_over(a, outline.p[b as usize], from, longest.along);
@@ -43,11 +45,55 @@ impl Front<'_> {
         }
         self.open.clear();
         self.row = self.grown.p.len() as u32;
-        first
+        let Some(lattice) = lattice else { return first };
+        self.fill(&lattice, longest.along);
+        self.lattice_end = self.grown.p.len() as u32;
+        // Where lengths are shorter, nodes grow on from those of the lattice.
+        if self.input.field.is_even() {
+            self.open.clear();
+        }
+        None
+    }
+
+    /// The whole lattice of the longest steps, where the face is a plane.
+    fn lattice(&self, longest: &Run) -> Option<SquareLattice> {
+        let plane = self.input.chart_surface.plane()?;
+        let (outline, field) = (self.input.outline, self.input.field);
+        let origin = outline.xy[longest.node as usize];
+        let size = outline.xy.iter().zip(&outline.p).map(|(xy, p)| field.size(*xy, *p)).fold(0.0, f64::max);
+        let along = DVec2::new(longest.along.dot(plane.dx), longest.along.dot(plane.dy)).try_normalize()?;
+        let frame = LatticeFrame { origin, along: along * (size * self.steps[0]), across: along.perp() * (size * self.steps[1]) };
+        SquareLattice::new(outline, frame, &|xy| field.size(xy, self.input.chart_surface.point(xy)) / size, self.input.search)
+    }
+
+    /// Places the nodes of a lattice that are near no other, where lengths are about as long as its steps.
+    fn fill(&mut self, lattice: &SquareLattice, along: DVec3) {
+        let surface = self.input.chart_surface;
+        let step = lattice.step() / DVec2::from(self.steps).max_element();
+        lattice.nodes(|xy, is_fitted| {
+            let p = surface.point(xy);
+            let size = self.input.field.size(xy, p);
+            let fits = || {
+                size >= SQUARE_HOLES.min_wanted_elsewhere * step
+                    && !self.near_rows(p, size, |_| false)
+                    && !self.near_border(FrontStep { from: xy, to: xy, p, size })
+            };
+            if is_fitted || fits() {
+                self.add(xy, p, size, along);
+            }
+            self.grown.p.len() <= self.input.most
+        });
     }
 
     /// Whether a place is too near to a node, or between two of the first row.
     pub(crate) fn near_square(&self, p: DVec3, size: f64) -> bool {
+        let lattice = self.row..self.lattice_end;
+        let wide = if lattice.is_empty() { 0.0 } else { SQUARE_HOLES.min_spacing_beside * size };
+        self.nodes.any(p, wide, size, |node, _| lattice.contains(&node.tag)) || self.near_rows(p, size, |_| true)
+    }
+
+    /// Whether a place is too near to a node, or between two of the border or the first row; of the others those that `counts`.
+    fn near_rows(&self, p: DVec3, size: f64, counts: impl Fn(u32) -> bool) -> bool {
         // The middle of a cell is as far from its corners as its steps are long.
         let steps = DVec2::from(self.steps).length() * std::f64::consts::FRAC_1_SQRT_2;
         let (near, far) = (
@@ -58,8 +104,12 @@ impl Front<'_> {
         let over = |tag: u32, at: DVec3| (p - at).dot(self.arms[tag as usize]) < SQUARE_ROWS.min_first_row_spacing * size;
         let row = |tag: u32| tag < self.row;
         self.nodes.any(p, far, size, |node, square| {
+            let is_inner = node.tag != u32::MAX && !row(node.tag);
+            if is_inner && !counts(node.tag) {
+                return false;
+            }
             beside += 1;
-            square < near || beside > 1 || node.tag != u32::MAX && !row(node.tag)
+            square < near || beside > 1 || is_inner
         }) || self.nodes.any(p, size, size, |node, _| row(node.tag) && over(node.tag, node.p))
     }
 
