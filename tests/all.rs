@@ -50,6 +50,7 @@ mod order;
 mod properties;
 mod quads;
 mod quadtree;
+mod random_plates;
 mod repl;
 mod report;
 mod scatters;
