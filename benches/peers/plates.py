@@ -96,9 +96,10 @@ class Plate:
             elif hole[0] == "spline":
                 loops.append(closed_spline(hole[1]))
             else:
-                p, q, r, s, _, _ = (occ.addPoint(x, y, 0) for x, y in sides(*hole[1:]))
-                a, b = (occ.addPoint(x, y, 0) for x, y in hole[1:3])
-                loops.append(occ.addCurveLoop([occ.addLine(p, q), occ.addCircleArc(q, b, r), occ.addLine(r, s), occ.addCircleArc(s, a, p)]))
+                # A half circle about its centre may go either way: it goes through the middle of the round end.
+                p, q, r, s, left, right = (occ.addPoint(x, y, 0) for x, y in sides(*hole[1:]))
+                arc = lambda start, through, end: occ.addCircleArc(start, through, end, center=False)
+                loops.append(occ.addCurveLoop([occ.addLine(p, q), arc(q, right, r), occ.addLine(r, s), arc(s, left, p)]))
         occ.addPlaneSurface(loops)
         occ.synchronize()
 
