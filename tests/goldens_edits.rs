@@ -70,17 +70,7 @@ impl Folder {
     fn evaluated(&self, script: &str) -> (String, Vec<f64>) {
         let disk = Disk::new(Some(&self.path.join("model.loft")), None, &[], Outputs::Counted).unwrap();
         let clock = || 0.0;
-        let task = Task {
-            name: "model.loft",
-            text: script.as_bytes(),
-            sets: &[],
-            row: None,
-            strict: false,
-            keep_going: false,
-            full: true,
-            picture: None,
-            clock: &clock,
-        };
+        let task = Task { full: true, ..Task::new("model.loft", script.as_bytes(), &[], &clock) };
         let mut found = (String::new(), Vec::new());
         let job = Job::new();
         let outcome = guarded(|| run_seen(&task, &disk, &job, &mut |cx| found = values(cx))).unwrap();

@@ -7,6 +7,6 @@ use lofting::session::run::{Outcome, Task, run};
 /// All that comes of a script, with params set from outside.
 pub fn outcome(name: &str, text: &[u8], sets: &[(String, String)], disk: &Disk) -> Outcome {
     let clock = || 0.0;
-    let task = Task { name, text, sets, row: None, strict: false, keep_going: false, full: true, picture: None, clock: &clock };
+    let task = Task { full: true, ..Task::new(name, text, sets, &clock) };
     run(&task, disk, &Job::default())
 }
