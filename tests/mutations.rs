@@ -20,6 +20,7 @@ use lofting::io::tables::{json, table, table_read, table_write};
 use lofting::mesh::chart::outline::{Outline, in_line};
 use lofting::mesh::chart::parametric_surface::{ParametricSurface, UniformSize};
 use lofting::mesh::tri::build::{NodePlacement, Task, triangulate};
+use lofting::mesh::tri::front::HolesInLattice;
 
 use crate::support::long::count;
 use crate::support::mutate::{Random, mutated};
@@ -281,7 +282,7 @@ fn triangulated(bytes: &[u8]) -> bool {
         chart_surface: &surface,
         field: &field,
         outline: &outline,
-        lattice: [NodePlacement::Triangles, NodePlacement::Squares, NodePlacement::Tree][bytes.len() % 3],
+        lattice: [NodePlacement::Triangles, NodePlacement::Squares(HolesInLattice::WithRoom), NodePlacement::Tree][bytes.len() % 3],
         settings: CARE,
         most: 20_000,
         limit_check: None,

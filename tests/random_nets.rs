@@ -11,6 +11,8 @@ use serde_json::Value;
 const PARTS: u32 = 6;
 /// Lines of the grid of each direction from whose corners nodes are looked for.
 const LINES: u32 = 80;
+/// Steps towards the foot of a place: those of long triangles lie far from where they are looked for.
+const FEET: usize = 6;
 
 fn point(surface: &Surface, at: DVec2) -> DVec3 {
     DVec3::from(surface.point(at.x, at.y))
@@ -59,7 +61,7 @@ fn measured(model: &Model) -> Measured {
                 continue;
             }
             let (q, guess) = ((0..3).map(|k| p[k] * share[k]).sum::<DVec3>(), (0..3).map(|k| at[k] * share[k]).sum::<DVec2>());
-            error = error.max(q.distance(point(surface, foot(surface, q, guess, 2))));
+            error = error.max(q.distance(point(surface, foot(surface, q, guess, FEET))));
         }
         let sides = [p[1].distance(p[2]), p[2].distance(p[0]), p[0].distance(p[1])];
         let area = 0.5 * (p[1] - p[0]).cross(p[2] - p[0]).length();

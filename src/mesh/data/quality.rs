@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::base::tolerance::Tolerance;
 use crate::base::{job, math, par};
-use crate::mesh::data::mesh::Mesh;
+use crate::mesh::data::mesh::{FaceRange, Mesh};
 
 /// Elements that one thread measures at a time.
 const BATCH: usize = 8192;
@@ -165,8 +165,7 @@ impl Mesh {
             return None;
         }
         let known = self.geometries.0.iter().try_fold(QualityTally::NONE, |sum, face| Some(sum.with(face.quality?)));
-        let all = known.filter(|known| known.count == count);
-        let all = all.unwrap_or_else(|| QualityTally::of(&self.triangles, &self.quads, &self.nodes));
+        let all = known.filter(|known| known.count == count).unwrap_or_else(|| self.quality_by_face(count));
         Some(Quality {
             min_angle: math::acos(all.cosines.0),
             max_angle: math::acos(all.cosines.1),
@@ -175,6 +174,17 @@ impl Mesh {
             max_aspect: all.aspect,
             area: all.area,
         })
+    }
+
+    /// Quality of all elements, `count` of them, added up as if that of each face were known.
+    fn quality_by_face(&self, count: usize) -> QualityTally {
+        let range = |range: &std::ops::Range<u32>| range.start as usize..range.end as usize;
+        let of_face = |face: &FaceRange| {
+            let (triangles, quads) = (self.triangles.get(range(&face.triangles)), self.quads.get(range(&face.quads)));
+            QualityTally::of(triangles.unwrap_or_default(), quads.unwrap_or_default(), &self.nodes)
+        };
+        let faces = self.faces.iter().map(of_face).fold(QualityTally::NONE, QualityTally::with);
+        if faces.count == count { faces } else { QualityTally::of(&self.triangles, &self.quads, &self.nodes) }
     }
 
     /// Centre of the area of the elements, a quad as its two triangles; of a mesh of lines of their length, of loose nodes

@@ -12,6 +12,7 @@ pub mod odd;
 pub mod open;
 pub mod pair;
 mod pattern;
+mod placements;
 pub mod plane;
 pub mod quad_face;
 pub mod regular;

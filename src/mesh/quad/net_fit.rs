@@ -21,7 +21,7 @@ use crate::mesh::quad::smooth::Smoother;
 use crate::mesh::quad::split::split;
 use crate::mesh::quad::swap::Swapper;
 use crate::mesh::request::fault::{MeshLimit, SizeFault};
-use crate::mesh::request::methods::{Elements, Method};
+use crate::mesh::request::methods::Elements;
 use crate::mesh::request::size_requests::floor_keeps;
 use crate::mesh::request::work::allow;
 use crate::mesh::tri::build::{NodePlacement, Task, initial_triangulation};
@@ -85,15 +85,15 @@ impl NetFit<'_> {
         Err(SizeFault::NotReached { limit: worst.limit, written_at, surface, reached, at: worst.at }.into())
     }
 
-    /// One net for these lengths, with a work budget of its own by its number of elements.
-    fn net(&self, field: &GradedSize, job: &Job) -> Outcome<Net> {
+    /// One net for these lengths from nodes of one placement, with a work budget of its own by its number of elements.
+    pub(super) fn net_of(&self, field: &GradedSize, placement: NodePlacement, job: &Job) -> Outcome<Net> {
         let same = UniformSize(field.spacing * self.fit.face.size.0);
         let plain = field.sources.is_empty() && field.background.is_none();
         let wanted: &dyn SizeField = if plain { &same } else { field };
         let quads = self.fit.face.elements == Elements::Quads;
         let twice = Twice(wanted);
         let cells: &dyn SizeField = if quads { &twice } else { wanted };
-        let mut net = match self.pairs(cells, job)? {
+        let mut net = match self.pairs(cells, placement, job)? {
             Ok(net) => net,
             Err(reason) => return Ok(Err(reason)),
         };
@@ -117,13 +117,8 @@ impl NetFit<'_> {
     }
 
     /// Triangles between nodes of a lattice and of the border, paired.
-    fn pairs(&self, cells: &dyn SizeField, job: &Job) -> Outcome<Net> {
+    fn pairs(&self, cells: &dyn SizeField, lattice: NodePlacement, job: &Job) -> Outcome<Net> {
         let quads = self.fit.face.elements == Elements::Quads;
-        let lattice = match () {
-            () if self.fit.face.method == Method::Quadtree => NodePlacement::Tree,
-            () if self.is_regular() => NodePlacement::SearchedSquares,
-            () => NodePlacement::Squares,
-        };
         let (chart_surface, outline) = (self.fit.chart, &self.halves.outline);
         let most = if quads { self.fit.most().div_ceil(4) } else { self.fit.most() };
         let task = Task { chart_surface, field: cells, outline, settings: self.fit.settings, lattice, most, limit_check: None };
@@ -147,7 +142,7 @@ impl NetFit<'_> {
     }
 
     /// Whether few irregular nodes are asked for.
-    fn is_regular(&self) -> bool {
+    pub(super) fn is_regular(&self) -> bool {
         self.fit.face.elements == Elements::Quads && self.fit.face_input.input.plan.settings.regular()
     }
 

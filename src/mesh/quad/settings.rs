@@ -226,3 +226,11 @@ pub(crate) const LIMIT_REPAIR: LimitRepairSettings = LimitRepairSettings {
     target_ratio: 0.98,
     bound_over_sample: 1.1..3.0,
 };
+
+/// When a face is made with another placement of nodes (`placements.rs`).
+pub(crate) struct PlacementSettings {
+    /// Quality of the worst quad below which it is.
+    pub(crate) min_quality: f64,
+}
+
+pub(crate) const PLACEMENTS: PlacementSettings = PlacementSettings { min_quality: 0.55 };

@@ -9,7 +9,7 @@ use crate::base::triangulate_points::{Triangles, points};
 use crate::mesh::chart::outline::{Outline, inside};
 use crate::mesh::chart::parametric_surface::{ParametricSurface, SizeField};
 use crate::mesh::request::plan::TALL;
-use crate::mesh::tri::front::{FrontInput, LatticeCell, STRAIGHT, grow};
+use crate::mesh::tri::front::{FrontInput, HolesInLattice, LatticeCell, STRAIGHT, grow};
 use crate::mesh::tri::no_mesh::{NoMesh, Outcome};
 use crate::mesh::tri::optimize::{LimitCheck, MeshOptimizer, OptimizeSettings};
 use crate::mesh::tri::optimize_settings::REPAIR;
@@ -22,10 +22,8 @@ use crate::mesh::tri::triangulation::Triangulation;
 pub enum NodePlacement {
     /// A lattice of equilateral triangles, grown from the border.
     Triangles,
-    /// A lattice of squares, grown from the border.
-    Squares,
-    /// The same, with as many holes of plane faces in it as a search finds room for.
-    SearchedSquares,
+    /// A lattice of squares, grown from the border, with these holes of plane faces in it.
+    Squares(HolesInLattice),
     /// The corners of a quadtree's cells.
     Tree,
 }
@@ -97,14 +95,14 @@ pub fn initial_triangulation(task: &Task, job: &Job) -> Outcome<Triangulation> {
         return Ok(Err(NoMesh::TooManyNodes));
     }
     let mut grown = match task.lattice {
-        NodePlacement::Triangles | NodePlacement::Squares | NodePlacement::SearchedSquares => {
+        NodePlacement::Triangles | NodePlacement::Squares(_) => {
             let seeds = seeds(&coarse, &kept, outline);
-            let cell = if task.lattice == NodePlacement::Triangles { LatticeCell::Triangle } else { LatticeCell::Square };
-            let search = task.lattice == NodePlacement::SearchedSquares;
-            grow(
-                &FrontInput { chart_surface: task.chart_surface, field: task.field, outline, seeds: &seeds, cell, search, most: task.most },
-                job,
-            )?
+            let (cell, holes) = match task.lattice {
+                NodePlacement::Squares(holes) => (LatticeCell::Square, holes),
+                _ => (LatticeCell::Triangle, HolesInLattice::None),
+            };
+            let (chart_surface, field, most) = (task.chart_surface, task.field, task.most);
+            grow(&FrontInput { chart_surface, field, outline, seeds: &seeds, cell, holes, most }, job)?
         }
         NodePlacement::Tree => {
             match quadtree::nodes(&TreeFace { chart_surface: task.chart_surface, field: task.field, outline, most: task.most }) {
@@ -154,7 +152,7 @@ fn expected(task: &Task, coarse: &Triangles, kept: &[bool]) -> f64 {
         let size = task.field.size(middle.0, middle.1);
         let area = (c[1].1 - c[0].1).cross(c[2].1 - c[0].1).length();
         // Half a node a triangle of side `size`, whose area is √3/4 of its square, or one a square.
-        let cell = if matches!(task.lattice, NodePlacement::Squares | NodePlacement::SearchedSquares) { 1.0 } else { TALL };
+        let cell = if matches!(task.lattice, NodePlacement::Squares(_)) { 1.0 } else { TALL };
         let nodes = 0.5 * area / (cell * size * size);
         let varies = || c.iter().any(|c| task.field.size(c.0, c.1) * ESTIMATE.equal_size_ratio < size);
         if task.field.is_even() || left == 0 || nodes < 1.0 || nodes < ESTIMATE.nodes_of_one_size && !varies() {

@@ -32,6 +32,17 @@ pub enum LatticeCell {
     Square,
 }
 
+/// Which holes of a plane face are rectangles of its lattice of squares.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HolesInLattice {
+    /// None: rows follow every border.
+    None,
+    /// Those with room for one about their middle.
+    WithRoom,
+    /// As many as a search finds room for.
+    Searched,
+}
+
 /// What growing needs.
 pub struct FrontInput<'a> {
     /// The surface.
@@ -44,8 +55,8 @@ pub struct FrontInput<'a> {
     pub seeds: &'a [(DVec2, DVec3)],
     /// What grows.
     pub cell: LatticeCell,
-    /// Whether to search for a lattice of squares with as many holes as have room in it.
-    pub search: bool,
+    /// Which holes of plane faces are rectangles of a lattice of squares.
+    pub holes: HolesInLattice,
     /// Most nodes.
     pub most: usize,
 }

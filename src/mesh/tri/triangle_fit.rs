@@ -23,6 +23,7 @@ use crate::mesh::request::size_requests::floor_keeps;
 use crate::mesh::request::sources::{Body, STEEP, Source, Sources};
 use crate::mesh::size::border_spacing::{FILLED, SPACING};
 use crate::mesh::tri::build::{NodePlacement, Task, expected_nodes, triangulate};
+use crate::mesh::tri::front::HolesInLattice;
 use crate::mesh::tri::graded_size::{Background, GradedSize};
 use crate::mesh::tri::limit_table::{LimitTable, ratio};
 use crate::mesh::tri::longest::{Longest, longest_side};
@@ -113,8 +114,11 @@ pub(crate) fn elements_ahead(face_input: &FaceInput, face: &Face) -> Option<[f64
     let (_, chart, outline) = outlined(face_input, face)?;
     let rules = near(face_input, face, &outline);
     let quads = face.elements == Elements::Quads;
-    let (lattice, spacing) =
-        if quads { (NodePlacement::Squares, 1.0) } else { (NodePlacement::Triangles, if face.is_grown() { SPACING } else { 1.0 }) };
+    let (lattice, spacing) = if quads {
+        (NodePlacement::Squares(HolesInLattice::WithRoom), 1.0)
+    } else {
+        (NodePlacement::Triangles, if face.is_grown() { SPACING } else { 1.0 })
+    };
     let sources = Sources::new(rules.items().to_vec(), rules.slope() / spacing);
     let field = GradedSize { sources: &sources, range: (face.size.0, face_input.wanted.written), spacing, background: None };
     let even = UniformSize(spacing * face.size.0);

@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3};
 
 use crate::base::math;
 use crate::mesh::tri::front::square_lattice::{LatticeFrame, SquareLattice};
-use crate::mesh::tri::front::{Front, FrontStep, STRAIGHT};
+use crate::mesh::tri::front::{Front, FrontStep, HolesInLattice, STRAIGHT};
 use crate::mesh::tri::placement_settings::{FRONT, SQUARE_HOLES, SQUARE_ROWS};
 
 /// A right angle, radians.
@@ -57,13 +57,18 @@ impl Front<'_> {
 
     /// The whole lattice of the longest steps, where the face is a plane.
     fn lattice(&self, longest: &Run) -> Option<SquareLattice> {
-        let plane = self.input.chart_surface.plane()?;
+        let plane = self.input.chart_surface.plane().filter(|_| self.input.holes != HolesInLattice::None)?;
         let (outline, field) = (self.input.outline, self.input.field);
         let origin = outline.xy[longest.node as usize];
         let size = outline.xy.iter().zip(&outline.p).map(|(xy, p)| field.size(*xy, *p)).fold(0.0, f64::max);
         let along = DVec2::new(longest.along.dot(plane.dx), longest.along.dot(plane.dy)).try_normalize()?;
         let frame = LatticeFrame { origin, along: along * (size * self.steps[0]), across: along.perp() * (size * self.steps[1]) };
-        SquareLattice::new(outline, frame, &|xy| field.size(xy, self.input.chart_surface.point(xy)) / size, self.input.search)
+        SquareLattice::new(
+            outline,
+            frame,
+            &|xy| field.size(xy, self.input.chart_surface.point(xy)) / size,
+            self.input.holes == HolesInLattice::Searched,
+        )
     }
 
     /// Places the nodes of a lattice that are near no other, where lengths are about as long as its steps.
