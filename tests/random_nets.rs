@@ -28,7 +28,14 @@ fn foot(surface: &Surface, p: DVec3, mut at: DVec2, steps: usize) -> DVec2 {
         };
         let (du, dv, d) = (slope(DVec2::X), slope(DVec2::Y), p - point(surface, at));
         let (e, f, g) = (du.dot(du), du.dot(dv), dv.dot(dv));
-        let step = DVec2::new(g * du.dot(d) - f * dv.dot(d), e * dv.dot(d) - f * du.dot(d)) / (e * g - f * f);
+        let mut step = DVec2::new(g * du.dot(d) - f * dv.dot(d), e * dv.dot(d) - f * du.dot(d)) / (e * g - f * f);
+        // On the border of the net the foot is looked for along it.
+        let is_held = |axis: usize| at[axis] <= 0.0 && step[axis] < 0.0 || at[axis] >= 1.0 && step[axis] > 0.0;
+        if is_held(0) {
+            step = DVec2::new(0.0, dv.dot(d) / g);
+        } else if is_held(1) {
+            step = DVec2::new(du.dot(d) / e, 0.0);
+        }
         at = (at + step).clamp(DVec2::ZERO, DVec2::ONE);
     }
     at

@@ -134,14 +134,14 @@ impl Module {
         let mut by_name = vec![0; n_names];
         let mut states = vec![State::Waiting; script.declarations.len()];
         let mut twice = Vec::new();
-        for i in 0..script.declarations.len() {
+        for (i, state) in states.iter_mut().enumerate() {
             let Some(bound) = script.declarations.bound(i) else { continue };
             let slot: &mut u32 = &mut by_name[bound.name.index()];
             if *slot == 0 {
                 *slot = i as u32 + 1;
             } else {
                 twice.push((*slot - 1, i as u32));
-                states[i] = State::Failed;
+                *state = State::Failed;
             }
         }
         let mut broken: Vec<Name> = script.broken.iter().map(|b| b.name).collect();

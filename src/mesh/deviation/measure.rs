@@ -9,7 +9,7 @@ use crate::base::par;
 use crate::base::tolerance::Tolerance;
 use crate::mesh::data::face_geometry::{FaceGeometry, FaceNodes};
 use crate::mesh::deviation::bend_tiles::BendTiles;
-use crate::mesh::deviation::measure_grid::GridMeasure;
+use crate::mesh::deviation::measure_grid::{GridList, GridMeasure};
 use crate::mesh::deviation::quadratic::over_sides;
 use crate::mesh::deviation::samples::{Farthest, beside_pole, bounded, follow, of_triangle};
 use crate::surface::{Evaluator, Surface};
@@ -147,9 +147,9 @@ impl ListedTriangles<'_> {
 
 /// The largest distance of a grid whose opposite sides are divided differently, cell by cell.
 pub(super) fn of_leaning_grid(surface: &Surface, measured: &GridMeasure) -> f64 {
-    let (uv, ids, border, halves) = measured.listed();
+    let GridList { uv, ids, border, triangles } = measured.listed();
     let power_form = surface.power_form();
     let evaluator = Evaluator::new(surface, power_form.as_ref());
     let (nodes, tolerance) = (measured.nodes, measured.tolerance);
-    ListedTriangles { evaluator, uv: &uv, ids: &ids, border, nodes, halves: &halves, tolerance }.largest()
+    ListedTriangles { evaluator, uv: &uv, ids: &ids, border, nodes, halves: &triangles, tolerance }.largest()
 }

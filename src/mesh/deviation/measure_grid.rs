@@ -45,6 +45,17 @@ pub(super) struct GridMeasure<'a> {
     starts: Vec<usize>,
 }
 
+/// A grid as a list of nodes, row by row.
+pub(super) struct GridList {
+    /// (u, v) and numbers in the mesh of the nodes.
+    pub uv: Vec<(f64, f64)>,
+    pub ids: Vec<u32>,
+    /// How many of them may be off the surface.
+    pub border: usize,
+    /// Corners by their places in the list.
+    pub triangles: Vec<[usize; 3]>,
+}
+
 /// Cells from the first corner to before the second.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct CellBlock {
@@ -238,8 +249,8 @@ impl<'a> GridMeasure<'a> {
         points
     }
 
-    /// The nodes row by row, with (u, v) and numbers in the mesh, how many of them may be off the surface, and the triangles.
-    pub fn listed(&self) -> (Vec<(f64, f64)>, Vec<u32>, usize, Vec<[usize; 3]>) {
+    /// Its nodes, all of which may be off the surface, and triangles.
+    pub fn listed(&self) -> GridList {
         let (nu, nv) = self.grid.size();
         let all = || (0..=nv).flat_map(|j| (0..=nu).map(move |i| (i, j)));
         let uv: Vec<(f64, f64)> = all().map(|(i, j)| self.grid.uv(i, j)).collect();
@@ -251,7 +262,7 @@ impl<'a> GridMeasure<'a> {
             triangles.extend(self.halves(i, j, &self.cell(i, j)).iter().map(|half| half.map(|k| corners[k])));
         }
         let count = uv.len();
-        (uv, ids, count, triangles)
+        GridList { uv, ids, border: count, triangles }
     }
 }
 

@@ -113,7 +113,7 @@ fn take_out(net: &mut Net, mut taken: Vec<(usize, [u32; 2])>) -> Vec<u32> {
     let mut of: Vec<u32> = (0..net.p.len() as u32).collect();
     taken.iter().for_each(|(_, [stays, goes])| of[*goes as usize] = *stays);
     // Higher faces first: the last one gets the number of the one that goes.
-    taken.sort_by(|a, b| b.0.cmp(&a.0));
+    taken.sort_by_key(|taken| std::cmp::Reverse(taken.0));
     for (face, _) in &taken {
         if !net.across.is_empty() {
             let (c, [stays, goes]) = (net.face[*face], taken.iter().find(|t| t.0 == *face).map_or([NONE; 2], |t| t.1));

@@ -92,11 +92,12 @@ pub(crate) fn bend_of_step(length: f64, chord: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::math;
 
     #[test]
     fn a_step_of_a_circle_bends_within_its_bound_and_hardly_less() {
         for turn in [0.02_f64, 0.1, 0.5] {
-            let (chord, sagitta) = (2.0 * (0.5 * turn).sin(), 1.0 - (0.5 * turn).cos());
+            let (chord, sagitta) = (2.0 * math::sin(0.5 * turn), 1.0 - math::cos(0.5 * turn));
             let bound = bend_of_step(turn, chord);
             assert!(sagitta <= bound && bound <= 1.2 * sagitta, "{turn}: {sagitta} {bound}");
         }

@@ -215,7 +215,7 @@ impl SquareLattice {
     /// Moves nodes to the means of their neighbours.
     fn relax(&mut self) {
         let width = self.size.x as usize;
-        let inner = |k: &usize| k % width > 0 && k % width + 1 < width && *k >= width && k + width < self.q.len();
+        let inner = |k: &usize| !k.is_multiple_of(width) && k % width + 1 < width && *k >= width && k + width < self.q.len();
         let moved: Vec<usize> = (0..self.q.len()).filter(|k| self.kind[*k] == Kind::Moved).filter(inner).collect();
         for _ in 0..SQUARE_HOLES.sweeps {
             for k in job::looking(&moved).copied() {
