@@ -14,7 +14,7 @@ use super::slice;
 use crate::base::bbox::Box3;
 use crate::base::digest::{StableHash, StableHasher};
 use crate::base::fault::Result;
-use crate::base::few::Few;
+use crate::base::inline_list::InlineList;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::construct::build;
@@ -30,7 +30,7 @@ pub struct Chain(Arc<Inner>);
 
 #[derive(Debug)]
 struct Inner {
-    runs: Few<Run, 1>,
+    runs: InlineList<Run, 1>,
     /// `None` of one whole curve run forwards, as most chains are.
     table: Option<Box<RunTable>>,
     length: f64,
@@ -63,7 +63,7 @@ impl Chain {
     }
 
     /// Runs in a row; the caller knows that each starts where the one before ends. There must be at least one.
-    pub fn of_runs(runs: impl Into<Few<Run, 1>>, origin: Origin) -> Self {
+    pub fn of_runs(runs: impl Into<InlineList<Run, 1>>, origin: Origin) -> Self {
         let runs = runs.into();
         let length: f64 = runs.iter().map(Run::length).sum();
         if whole(&runs).is_some() && length > 0.0 {

@@ -12,7 +12,7 @@ use super::chain::{Chain, Run, same_curve};
 use super::hits::{self, Contact};
 use super::near::near_misses;
 use crate::base::fault::{Fault, Result};
-use crate::base::few::Few;
+use crate::base::inline_list::InlineList;
 use crate::base::job::Job;
 use crate::base::math::compare_points;
 use crate::base::origin::Origin;
@@ -35,7 +35,7 @@ pub struct Node {
     /// Where it is: the declared point among the hits, else their mean.
     pub point: DVec3,
     /// Links that end here, with `true` where the link ends and `false` where it starts; ascending.
-    pub ends: Few<(LinkId, bool), 2>,
+    pub ends: InlineList<(LinkId, bool), 2>,
 }
 
 /// A run of one curve between neighbouring nodes.
@@ -59,12 +59,12 @@ pub struct NetCurve {
     /// Arc lengths where a node was asked for.
     pub cuts: Vec<f64>,
     /// Links it runs over from start to end, with `true` where it runs against the link's direction (shared runs).
-    pub links: Few<(LinkId, bool), 1>,
+    pub links: InlineList<(LinkId, bool), 1>,
     /// Its nodes from start to end, `links.len() + 1` of them; those of a closed curve begin and end with its first
     /// node, which is at its start only when nothing meets it or something meets it there.
-    pub nodes: Few<NodeId, 2>,
+    pub nodes: InlineList<NodeId, 2>,
     /// Arc lengths of these nodes on this curve, ascending; the last one of a closed curve is one turn after the first.
-    pub stations: Few<f64, 2>,
+    pub stations: InlineList<f64, 2>,
 }
 
 /// A curve to insert.
@@ -173,7 +173,14 @@ impl Network {
         if length.is_nan() || length <= tolerance.point {
             return Err(ChainFault::NoLength { of: curve.origin(), at: curve.start(), length, tolerance: tolerance.point }.into());
         }
-        self.curves.push(NetCurve { name, curve, cuts, links: Few::default(), nodes: Few::default(), stations: Few::default() });
+        self.curves.push(NetCurve {
+            name,
+            curve,
+            cuts,
+            links: InlineList::default(),
+            nodes: InlineList::default(),
+            stations: InlineList::default(),
+        });
         Ok(())
     }
 

@@ -4,7 +4,7 @@ use super::assemble::Stations;
 use super::graph::{CurveId, Link, LinkId, NetCurve, Node, NodeId};
 use super::shared;
 use crate::base::fault::Fault;
-use crate::base::few::Few;
+use crate::base::inline_list::InlineList;
 
 /// Not numbered yet.
 const NONE: u32 = u32::MAX;
@@ -21,7 +21,7 @@ pub fn number(curves: &mut [NetCurve], stations: Stations, shared: shared::Share
             let number = &mut number_of[station.node as usize];
             if *number == NONE {
                 *number = nodes.len() as u32;
-                nodes.push(Node { point: stations.points[station.node as usize], ends: Few::default() });
+                nodes.push(Node { point: stations.points[station.node as usize], ends: InlineList::default() });
             }
             own.push(NodeId(*number));
             at.push(station.s);

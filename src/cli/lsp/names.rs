@@ -67,11 +67,8 @@ impl Read {
 
     /// The file that a `use` loads.
     fn module(&self, declaration: usize, from: &Path) -> Option<PathBuf> {
-        let declaration = (declaration < self.script.declarations.len()).then(|| self.script.declarations.whole(declaration))?;
+        let declaration = self.script.declarations.get(declaration).filter(|d| d.keyword == Keyword::Use)?;
         let DeclarationKind::Load { path, .. } = &declaration.kind else { return None };
-        if declaration.keyword != Keyword::Use {
-            return None;
-        }
         match &declaration.nodes.get(path.index())?.expr {
             Expr::Text(parts) => match parts.as_slice() {
                 [TextPart::Literal(text)] => from.parent()?.join(&**text).canonicalize().ok(),

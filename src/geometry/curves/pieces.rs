@@ -8,7 +8,7 @@ use crate::geometry::shapes::bounds::Rates;
 use glam::{DVec3, DVec4};
 
 use crate::base::bbox::Box3;
-use crate::base::few::Few;
+use crate::base::inline_list::InlineList;
 use crate::base::math;
 use crate::base::tolerance::EPSILON;
 use crate::geometry::curves::curve::{Curve, Shape};
@@ -143,10 +143,10 @@ pub(crate) struct Piece {
 /// All pieces of one curve in order, and boxes over runs of them.
 #[derive(Clone, Debug)]
 pub(crate) struct Pieces {
-    pub(crate) sections: Few<Section, 1>,
-    pub(crate) pieces: Few<Piece, 1>,
+    pub(crate) sections: InlineList<Section, 1>,
+    pub(crate) pieces: InlineList<Piece, 1>,
     /// Boxes in preorder: node, left half of its pieces, right half.
-    tree: Few<Box3, 1>,
+    tree: InlineList<Box3, 1>,
 }
 
 /// Sections and pieces on their way.

@@ -13,8 +13,7 @@ impl Cx<'_> {
     /// The words of the export being evaluated; `None` where its file or its mesh is not known, and where its format has no such words.
     pub(crate) fn element_words(&mut self, code: Code<'_>) -> Option<Vec<&'static str>> {
         let script = self.machine.at(code.module).script.clone();
-        let at = code.declaration as usize;
-        let declaration = (at < script.declarations.len()).then(|| script.declarations.whole(at))?;
+        let declaration = script.declarations.get(code.declaration as usize)?;
         let DeclarationKind::Output { things, to, .. } = &declaration.kind else { return None };
         let (path, _) = self.path(code, *to).ok()?;
         let format = format_for(Origin::NONE, &path).ok()?;

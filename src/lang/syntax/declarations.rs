@@ -160,6 +160,11 @@ impl Declarations {
         }
     }
 
+    /// The same; `None` where there are not so many.
+    pub fn get(&self, at: usize) -> Option<Arc<Declaration>> {
+        (at < self.len()).then(|| self.whole(at))
+    }
+
     /// All with their trees, in order.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = Arc<Declaration>> + DoubleEndedIterator + '_ {
         (0..self.len()).map(|at| self.whole(at))

@@ -35,7 +35,16 @@ const SETTINGS: MeasureSettings =
 /// Largest distance of a face's elements from its surface, model units; `triangles` are those of the face.
 pub fn of_face(surface: &Surface, geometry: &FaceGeometry, triangles: &[[u32; 3]], nodes: &[DVec3], tolerance: &Tolerance) -> f64 {
     match &geometry.nodes {
-        FaceNodes::Grid(grid, frame) => GridMeasure::new(surface, grid, frame, (triangles, nodes), tolerance).largest(),
+        FaceNodes::Grid(grid, frame) => {
+            let of_grid = GridMeasure::new(surface, grid, frame, (triangles, nodes), tolerance);
+            if grid.straight == (true, true) {
+                return of_grid.largest();
+            }
+            let GridList { uv, ids, border, triangles } = of_grid.listed();
+            let power_form = surface.power_form();
+            let evaluator = Evaluator::new(surface, power_form.as_ref());
+            ListedTriangles { evaluator, uv: &uv, ids: &ids, border, nodes, halves: &triangles, tolerance }.largest()
+        }
         listed if surface.is_flat() => from_plane(surface, &listed.listed_ids(), nodes, tolerance),
         listed => {
             let mut halves: Vec<[usize; 3]> = Vec::new();
@@ -113,7 +122,7 @@ impl ListedTriangles<'_> {
             let (u, v) = self.uv[n];
             self.evaluator.point(u, v).distance(self.nodes[self.ids[n] as usize])
         });
-        let most = |half: &[usize; 3]| half.iter().filter_map(|n| off.get(*n)).fold(0.0_f64, |most, off| most.max(*off));
+        let off_surface = |half: &[usize; 3]| half.iter().filter_map(|n| off.get(*n)).fold(0.0_f64, |most, off| most.max(*off));
         let of_half = |half: &[usize; 3]| {
             let uv = beside_pole(self.evaluator, half.map(|n| self.uv[n])).map(DVec2::from);
             let p = half.map(|n| self.nodes[self.ids[n] as usize]);
@@ -122,7 +131,7 @@ impl ListedTriangles<'_> {
             if normal == DVec3::ZERO {
                 return f64::INFINITY;
             }
-            tiles.bends(box_of, normal).map_or(f64::INFINITY, |bends| over_sides(&bends, uv, box_of.1 - box_of.0) + most(half))
+            tiles.bends(box_of, normal).map_or(f64::INFINITY, |bends| over_sides(&bends, uv, box_of.1 - box_of.0) + off_surface(half))
         };
         let batches = par::map(self.halves.len().div_ceil(SETTINGS.batch), |batch| {
             self.halves[batch * SETTINGS.batch..].iter().take(SETTINGS.batch).map(of_half).collect::<Vec<_>>()
@@ -143,13 +152,4 @@ impl ListedTriangles<'_> {
         });
         follow(self.evaluator, batches.into_iter().flatten().collect(), known, self.tolerance)
     }
-}
-
-/// The largest distance of a grid whose opposite sides are divided differently, cell by cell.
-pub(super) fn of_leaning_grid(surface: &Surface, measured: &GridMeasure) -> f64 {
-    let GridList { uv, ids, border, triangles } = measured.listed();
-    let power_form = surface.power_form();
-    let evaluator = Evaluator::new(surface, power_form.as_ref());
-    let (nodes, tolerance) = (measured.nodes, measured.tolerance);
-    ListedTriangles { evaluator, uv: &uv, ids: &ids, border, nodes, halves: &triangles, tolerance }.largest()
 }

@@ -12,7 +12,6 @@ use crate::base::par;
 use crate::base::range::Interval3;
 use crate::base::tolerance::Tolerance;
 use crate::mesh::deviation::bend_tiles::along_normal;
-use crate::mesh::deviation::measure::of_leaning_grid;
 use crate::mesh::deviation::quadratic::over_sides;
 use crate::mesh::deviation::samples::{Farthest, SIX, beside_pole, follow, middle, of_triangle, off, peak, weights};
 use crate::mesh::mapped::grid::{Grid, GridIds, triangle_rows};
@@ -39,8 +38,8 @@ pub(super) struct GridMeasure<'a> {
     grid: &'a Grid,
     frame: &'a GridIds,
     triangles: &'a [[u32; 3]],
-    pub nodes: &'a [DVec3],
-    pub tolerance: &'a Tolerance,
+    nodes: &'a [DVec3],
+    tolerance: &'a Tolerance,
     /// First triangle of each row; empty for quads.
     starts: Vec<usize>,
 }
@@ -121,11 +120,8 @@ impl<'a> GridMeasure<'a> {
         Self { surface, grid, frame, triangles, nodes, tolerance, starts: triangle_rows(frame, !triangles.is_empty()) }
     }
 
-    /// The largest distance, model units.
+    /// The largest distance of a grid whose rows and columns are straight in (u, v), model units.
     pub fn largest(&self) -> f64 {
-        if self.grid.straight != (true, true) {
-            return of_leaning_grid(self.surface, self);
-        }
         let (nu, nv) = self.grid.size();
         // Nodes of the border need not lie on the surface.
         let (inner_u, inner_v) = ((1, nu - 1), (1, nv - 1));

@@ -8,7 +8,7 @@ use crate::mesh::chart::halves::NONE;
 use crate::mesh::quad::net::Net;
 
 /// A net that changes quad by quad.
-pub(super) struct Mutable<'a> {
+pub(super) struct EditableNet<'a> {
     pub net: &'a mut Net,
     /// Faces round each node.
     pub of: Vec<Vec<u32>>,
@@ -16,7 +16,7 @@ pub(super) struct Mutable<'a> {
     pub alive: Vec<bool>,
 }
 
-impl<'a> Mutable<'a> {
+impl<'a> EditableNet<'a> {
     /// Takes a net.
     pub fn new(net: &'a mut Net) -> Self {
         let mut of: Vec<Vec<u32>> = job::looking(&net.p).map(|_| Vec::with_capacity(4)).collect();
@@ -60,7 +60,7 @@ impl Cavity {
         self.count.clear();
     }
 
-    fn add(&mut self, of: &Mutable, f: u32) {
+    fn add(&mut self, of: &EditableNet, f: u32) {
         if !std::mem::replace(&mut self.is_in[f as usize], true) {
             self.faces.push(f);
             of.net.corners(f as usize).iter().for_each(|n| *self.count.entry(*n).or_insert(0) += 1);
@@ -68,12 +68,12 @@ impl Cavity {
     }
 
     /// Adds all faces of a node.
-    pub fn add_node(&mut self, of: &Mutable, node: u32) {
+    pub fn add_node(&mut self, of: &EditableNet, node: u32) {
         of.of[node as usize].iter().for_each(|f| self.add(of, *f));
     }
 
     /// Adds faces until no inner node of the border turns inwards or is irregular; `false` where there would be more than `most`.
-    pub fn straighten(&mut self, of: &Mutable, most: usize) -> bool {
+    pub fn straighten(&mut self, of: &EditableNet, most: usize) -> bool {
         loop {
             let bent: Vec<u32> = self.count.iter().filter(|(n, count)| self.is_bent(of, **n, **count)).map(|c| *c.0).collect();
             if bent.is_empty() || self.faces.len() > most {
@@ -84,7 +84,7 @@ impl Cavity {
         }
     }
 
-    fn is_bent(&self, of: &Mutable, node: u32, count: u8) -> bool {
+    fn is_bent(&self, of: &EditableNet, node: u32, count: u8) -> bool {
         let all = &of.of[node as usize];
         if node < of.net.fixed || usize::from(count) == all.len() {
             return false;
@@ -93,7 +93,7 @@ impl Cavity {
     }
 
     /// Whether the two faces at a node of the border have a side in common.
-    fn are_beside(&self, of: &Mutable, node: u32) -> bool {
+    fn are_beside(&self, of: &EditableNet, node: u32) -> bool {
         let own: Vec<u32> = of.of[node as usize].iter().copied().filter(|f| self.is_in[*f as usize]).collect();
         let [a, b] = own[..] else { return false };
         let (a, b) = (of.net.face[a as usize], of.net.face[b as usize]);
@@ -101,7 +101,7 @@ impl Cavity {
     }
 
     /// Its border; `None` where that is no loop of sides, or the cavity has triangles or nodes inside that must stay.
-    pub fn rim(&self, of: &Mutable) -> Option<Rim> {
+    pub fn rim(&self, of: &EditableNet) -> Option<Rim> {
         let mut next: BTreeMap<u32, u32> = BTreeMap::new();
         let mut sides: BTreeSet<(u32, u32)> = BTreeSet::new();
         for f in &self.faces {
@@ -147,7 +147,7 @@ impl Cavity {
     }
 
     /// Faces beyond the sides of the border that irregular nodes are nearest to, or beyond all; `false` where there are none.
-    pub fn extend(&mut self, of: &Mutable, rim: &Rim) -> bool {
+    pub fn extend(&mut self, of: &EditableNet, rim: &Rim) -> bool {
         let beyond = |side: &Vec<u32>| -> Vec<u32> {
             let faces = side.windows(2).filter_map(|w| {
                 let shared = |f: &&u32| !self.is_in[**f as usize] && of.of[w[1] as usize].contains(f);

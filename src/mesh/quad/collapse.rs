@@ -3,7 +3,6 @@
 use std::f64::consts::FRAC_PI_2;
 
 use crate::base::job;
-use crate::base::math::angle_between;
 use crate::mesh::chart::halves::NONE;
 use crate::mesh::chart::parametric_surface::{ParametricSurface, SizeField};
 use crate::mesh::quad::net::Net;
@@ -76,15 +75,7 @@ fn candidates(smoother: &Smoother) -> Vec<Collapse> {
 
 /// How many faces there should be round a node of the border.
 fn wanted(smoother: &Smoother, node: usize) -> i64 {
-    let net = &*smoother.net;
-    let mut angle = 0.0;
-    for f in smoother.faces(node) {
-        let c = net.corners(*f as usize);
-        let Some(k) = c.iter().position(|n| *n as usize == node) else { continue };
-        let side = |i: usize| net.p[c[(k + i) % c.len()] as usize] - net.p[node];
-        angle += angle_between(side(1), side(c.len() - 1));
-    }
-    (angle / FRAC_PI_2).round().max(1.0) as i64
+    (smoother.angle_round(node) / FRAC_PI_2).round().max(1.0) as i64
 }
 
 /// Moves the node that stays to where both can be one; whether the faces round them stay good enough.

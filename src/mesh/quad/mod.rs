@@ -1,15 +1,15 @@
 //! Free faces of quads: triangles paired, cells halved, nodes smoothed.
 
 mod cavity;
-pub mod climb;
 pub mod collapse;
-pub mod evening;
+pub mod equalize;
 pub mod limit_repair;
 pub mod net;
 pub mod net_check;
 pub mod net_fit;
 pub mod odd;
 pub mod open;
+pub mod optimize_nodes;
 pub mod pair;
 mod pattern;
 mod placements;

@@ -10,7 +10,7 @@ use crate::mesh::chart::halves::{Halves, NONE};
 use crate::mesh::chart::parametric_surface::{ParametricSurface, SizeField, UniformSize};
 use crate::mesh::data::quality::is_concave;
 use crate::mesh::quad::collapse::collapse;
-use crate::mesh::quad::evening::Sides;
+use crate::mesh::quad::equalize::Sides;
 use crate::mesh::quad::net::{Net, Raw};
 use crate::mesh::quad::odd::whole_sides;
 use crate::mesh::quad::open::open;

@@ -3,10 +3,9 @@
 use glam::DVec3;
 
 use crate::base::job;
-use crate::base::math::angle_between;
 use crate::mesh::chart::halves::NONE;
 use crate::mesh::chart::parametric_surface::{ParametricSurface, SizeField, foot_spot};
-use crate::mesh::quad::evening::Sides;
+use crate::mesh::quad::equalize::Sides;
 use crate::mesh::quad::net::Net;
 use crate::mesh::quad::settings::OPENING;
 use crate::mesh::quad::smooth::Smoother;
@@ -116,13 +115,5 @@ fn opening(smoother: &Smoother, node: usize, towards: usize) -> Option<(i64, usi
 
 /// Whether the angle at a border node has room for one more quad.
 fn has_room(smoother: &Smoother, node: usize) -> bool {
-    let net = &*smoother.net;
-    let mut angle = 0.0;
-    for f in smoother.faces(node) {
-        let c = net.corners(*f as usize);
-        let Some(k) = c.iter().position(|n| *n as usize == node) else { continue };
-        let side = |i: usize| net.p[c[(k + i) % c.len()] as usize] - net.p[node];
-        angle += angle_between(side(1), side(c.len() - 1));
-    }
-    angle / (smoother.valence(node) + 1) as f64 > OPENING.min_border_angle
+    smoother.angle_round(node) / (smoother.valence(node) + 1) as f64 > OPENING.min_border_angle
 }

@@ -6,7 +6,7 @@ use crate::base::fault::Result;
 use crate::base::job::Job;
 use crate::base::work;
 use crate::mesh::chart::parametric_surface::{SizeField, Spot};
-use crate::mesh::quad::cavity::{Cavity, Mutable, Rim};
+use crate::mesh::quad::cavity::{Cavity, EditableNet, Rim};
 use crate::mesh::quad::net::Net;
 use crate::mesh::quad::pattern::{Pattern, irregular, pattern};
 use crate::mesh::quad::plane::least_sine;
@@ -23,7 +23,7 @@ pub(super) struct RegularInput<'a> {
 
 /// Fills cavities anew until no irregular node goes; whether any went.
 pub(super) fn regularize(net: &mut Net, input: &RegularInput, job: &Job) -> Result<bool> {
-    let mut regular = Regular { of: Mutable::new(net), input, cavity: Cavity::default() };
+    let mut regular = Regular { of: EditableNet::new(net), input, cavity: Cavity::default() };
     let mut any = false;
     for most in REGULAR.max_faces {
         for _ in 0..REGULAR.max_rounds {
@@ -40,7 +40,7 @@ pub(super) fn regularize(net: &mut Net, input: &RegularInput, job: &Job) -> Resu
             }
         }
     }
-    let Mutable { net, of, alive } = regular.of;
+    let EditableNet { net, of, alive } = regular.of;
     if any {
         let mut number = 0;
         net.face.retain(|_| {
@@ -54,7 +54,7 @@ pub(super) fn regularize(net: &mut Net, input: &RegularInput, job: &Job) -> Resu
 }
 
 struct Regular<'a> {
-    of: Mutable<'a>,
+    of: EditableNet<'a>,
     input: &'a RegularInput<'a>,
     cavity: Cavity,
 }
@@ -110,7 +110,7 @@ impl Regular<'_> {
     }
 
     fn put(&mut self, rim: &Rim, ring: &[u32], new: &Pattern, xy: &[DVec2]) {
-        let Mutable { net, of, alive } = &mut self.of;
+        let EditableNet { net, of, alive } = &mut self.of;
         for f in &self.cavity.faces {
             alive[*f as usize] = false;
         }
@@ -198,7 +198,7 @@ mod tests {
         net.fixed = border.len() as u32;
         let fixed = net.xy[..border.len()].to_vec();
         let odd = |net: &mut Net| {
-            let of = Mutable::new(net);
+            let of = EditableNet::new(net);
             (of.net.fixed..of.net.p.len() as u32).filter(|n| of.is_irregular(*n)).count()
         };
         assert_eq!(odd(&mut net), 4);

@@ -6,20 +6,20 @@ use crate::base::digest::{StableHash, StableHasher};
 
 /// A list of `N` items inside, or of any other number outside.
 #[derive(Clone, Debug)]
-pub enum Few<T, const N: usize> {
+pub enum InlineList<T, const N: usize> {
     /// `N` items.
     Inside([T; N]),
     /// Any other number.
     Outside(Box<[T]>),
 }
 
-impl<T, const N: usize> From<[T; N]> for Few<T, N> {
+impl<T, const N: usize> From<[T; N]> for InlineList<T, N> {
     fn from(items: [T; N]) -> Self {
         Self::Inside(items)
     }
 }
 
-impl<T, const N: usize> From<Vec<T>> for Few<T, N> {
+impl<T, const N: usize> From<Vec<T>> for InlineList<T, N> {
     fn from(items: Vec<T>) -> Self {
         match <[T; N]>::try_from(items) {
             Ok(items) => Self::Inside(items),
@@ -28,7 +28,7 @@ impl<T, const N: usize> From<Vec<T>> for Few<T, N> {
     }
 }
 
-impl<T, const N: usize> Deref for Few<T, N> {
+impl<T, const N: usize> Deref for InlineList<T, N> {
     type Target = [T];
 
     #[inline]
@@ -40,7 +40,7 @@ impl<T, const N: usize> Deref for Few<T, N> {
     }
 }
 
-impl<T, const N: usize> DerefMut for Few<T, N> {
+impl<T, const N: usize> DerefMut for InlineList<T, N> {
     #[inline]
     fn deref_mut(&mut self) -> &mut [T] {
         match self {
@@ -50,25 +50,25 @@ impl<T, const N: usize> DerefMut for Few<T, N> {
     }
 }
 
-impl<T: Copy, const N: usize> From<&[T]> for Few<T, N> {
+impl<T: Copy, const N: usize> From<&[T]> for InlineList<T, N> {
     fn from(items: &[T]) -> Self {
         <[T; N]>::try_from(items).map_or_else(|_| Self::Outside(items.into()), Self::Inside)
     }
 }
 
-impl<T, const N: usize> Default for Few<T, N> {
+impl<T, const N: usize> Default for InlineList<T, N> {
     fn default() -> Self {
         Vec::new().into()
     }
 }
 
-impl<T: PartialEq, const N: usize> PartialEq for Few<T, N> {
+impl<T: PartialEq, const N: usize> PartialEq for InlineList<T, N> {
     fn eq(&self, other: &Self) -> bool {
         **self == **other
     }
 }
 
-impl<'a, T, const N: usize> IntoIterator for &'a Few<T, N> {
+impl<'a, T, const N: usize> IntoIterator for &'a InlineList<T, N> {
     type Item = &'a T;
     type IntoIter = std::slice::Iter<'a, T>;
 
@@ -77,7 +77,7 @@ impl<'a, T, const N: usize> IntoIterator for &'a Few<T, N> {
     }
 }
 
-impl<T: StableHash, const N: usize> StableHash for Few<T, N> {
+impl<T: StableHash, const N: usize> StableHash for InlineList<T, N> {
     fn hash_into(&self, to: &mut StableHasher) {
         (**self).hash_into(to);
     }
@@ -91,15 +91,15 @@ mod tests {
     fn lists_are_the_same_inside_and_outside() {
         for n in 0..4 {
             let items: Vec<u32> = (0..n).collect();
-            let few: Few<u32, 2> = items.clone().into();
-            assert_eq!(matches!(few, Few::Inside(_)), n == 2);
-            assert_eq!(*few, *items);
+            let list: InlineList<u32, 2> = items.clone().into();
+            assert_eq!(matches!(list, InlineList::Inside(_)), n == 2);
+            assert_eq!(*list, *items);
             let digest = |content: &dyn Fn(&mut StableHasher)| {
-                let mut to = StableHasher::new("few");
+                let mut to = StableHasher::new("list");
                 content(&mut to);
                 to.finish()
             };
-            assert_eq!(digest(&|to| few.hash_into(to)), digest(&|to| items.hash_into(to)));
+            assert_eq!(digest(&|to| list.hash_into(to)), digest(&|to| items.hash_into(to)));
         }
     }
 }

@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use crate::base::fault::Result;
 use crate::base::job::Job;
+use crate::base::math::angle_between;
 use crate::mesh::quad::net::Net;
 use crate::mesh::quad::settings::SMOOTHING;
 use crate::mesh::quad::smooth::Smoother;
@@ -48,6 +49,18 @@ impl Smoother<'_> {
             let c = self.net.corners(*f as usize);
             c.iter().position(|c| *c as usize == node).map(|k| c[(k + 1) % c.len()] as usize)
         })
+    }
+
+    /// Sum of the angles of the faces at a node, radians.
+    pub(super) fn angle_round(&self, node: usize) -> f64 {
+        let net = &*self.net;
+        let angle = |f: &u32| {
+            let c = net.corners(*f as usize);
+            let k = c.iter().position(|n| *n as usize == node)?;
+            let side = |i: usize| net.p[c[(k + i) % c.len()] as usize] - net.p[node];
+            Some(angle_between(side(1), side(c.len() - 1)))
+        };
+        self.faces(node).iter().filter_map(angle).sum()
     }
 
     /// The shortest side at a node.
