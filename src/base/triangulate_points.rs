@@ -3,6 +3,7 @@
 use glam::DVec2;
 
 use super::job;
+use super::predicates::orient;
 use spade::{ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation};
 
 /// Why points and edges have no triangulation.
@@ -32,6 +33,9 @@ pub const NO_TRIANGLE: u32 = u32::MAX;
 
 /// One of so many nodes looks whether the triangulation should go on when it is asked where it is.
 const NODES_PER_LOOK: u32 = 32;
+
+/// So many points next to the mean of all tell whether a bulk load begins on a line.
+const FIRST_OF_LOAD: usize = 64;
 
 #[derive(Clone, Copy)]
 struct Node {
@@ -68,9 +72,10 @@ pub fn points(points: &[DVec2], edges: &[[u32; 2]]) -> Result<Triangles, PointsF
         .collect();
     // Loaded together with the edges, what lies on the hull would come in the order of a hash set with random seeds: another triangulation
     // in each run.
-    let mut cdt = ConstrainedDelaunayTriangulation::<Node>::bulk_load(nodes).map_err(|_| PointsFault::Flat)?;
+    let one_place = || twins(points).map_or(PointsFault::Flat, |(a, b)| PointsFault::Same(a, b));
+    let mut cdt = delaunay(nodes).ok_or_else(one_place)?;
     if cdt.num_vertices() != points.len() {
-        return Err(twins(points).map_or(PointsFault::Flat, |(a, b)| PointsFault::Same(a, b)));
+        return Err(one_place());
     }
     if cdt.num_inner_faces() == 0 {
         return Err(PointsFault::Flat);
@@ -91,6 +96,42 @@ pub fn points(points: &[DVec2], edges: &[[u32; 2]]) -> Result<Triangles, PointsF
     drop(cdt);
     let across = across(&corners, points.len());
     Ok(Triangles { corners, across, given })
+}
+
+/// The Delaunay triangulation of points without edges; nothing where a coordinate is no number.
+///
+/// A bulk load begins with the points next to their mean and puts them in order anew with each one as long as all are on one line. Where
+/// many of them are, as on a border that is flat in its chart, points come one by one instead: one beside the line first, then all along it.
+fn delaunay(mut nodes: Vec<Node>) -> Option<ConstrainedDelaunayTriangulation<Node>> {
+    let place = |node: &Node| DVec2::new(node.at.x, node.at.y);
+    let mean = nodes.iter().map(place).sum::<DVec2>() / nodes.len().max(1) as f64;
+    let mut nearest: Vec<DVec2> = nodes.iter().map(place).collect();
+    if nearest.len() > FIRST_OF_LOAD {
+        nearest.select_nth_unstable_by(FIRST_OF_LOAD, |p, q| p.distance_squared(mean).total_cmp(&q.distance_squared(mean)));
+        nearest.truncate(FIRST_OF_LOAD);
+    }
+    let (a, b) = most_distant(&nearest)?;
+    if nearest.len() < FIRST_OF_LOAD || nearest.iter().any(|p| orient(a, b, *p) != 0.0) {
+        drop(nearest);
+        return ConstrainedDelaunayTriangulation::bulk_load(nodes).ok();
+    }
+    let along = |node: &Node| (place(node) - a).dot(b - a);
+    nodes.sort_unstable_by(|m, n| along(m).total_cmp(&along(n)).then(m.index.cmp(&n.index)));
+    let apex = nodes.iter().position(|node| orient(a, b, place(node)) != 0.0)?;
+    // Each point in the middle of a gap between those before it: the triangles it changes stay few.
+    let spans = std::iter::successors(Some(nodes.len().next_power_of_two()), |span| (*span > 1).then_some(span / 2));
+    let halving = spans.flat_map(|span| (0..nodes.len()).step_by(span).filter(move |k| k / span % 2 == 1));
+    let others = std::iter::once(0).chain(halving).filter(|k| *k != apex);
+    let mut cdt = ConstrainedDelaunayTriangulation::new();
+    std::iter::once(apex).chain(others).try_for_each(|k| cdt.insert(nodes[k]).map(|_| ())).ok()?;
+    Some(cdt)
+}
+
+/// The first and the last of points in order of their coordinates: two ends of the line where they are all on one.
+fn most_distant(points: &[DVec2]) -> Option<(DVec2, DVec2)> {
+    let order = |p: &DVec2, q: &DVec2| p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y));
+    let low = points.iter().copied().min_by(order)?;
+    Some((low, points.iter().copied().max_by(order)?))
 }
 
 /// The inner faces in the order of their corners, each from the least one on, and which of their sides are given: the order of loading follows
@@ -181,6 +222,27 @@ fn twins(points: &[DVec2]) -> Option<(u32, u32)> {
 mod tests {
     use super::*;
     use crate::base::math::powi;
+
+    #[test]
+    fn points_on_a_line_are_flat_and_one_beside_makes_a_fan_in_time() {
+        let n = 40_000;
+        let mut places: Vec<DVec2> = (0..n).map(|k| DVec2::new(f64::from(k * 7919 % n), 0.0)).collect();
+        assert_eq!(points(&places, &[]).err(), Some(PointsFault::Flat));
+        places.push(DVec2::new(0.3 * f64::from(n), 1e-3));
+        let fan = points(&places, &[[0, 1]]);
+        assert_eq!(fan.map(|fan| fan.corners.len()), Err(PointsFault::Crosses(0, 1)));
+        assert_eq!(points(&places, &[]).map(|fan| fan.corners.len()), Ok(n as usize - 1));
+        places.push(places[17]);
+        assert_eq!(points(&places, &[]).err(), Some(PointsFault::Same(17, n as u32 + 1)));
+    }
+
+    #[test]
+    fn points_nearly_on_a_line_take_time_in_proportion() {
+        let n = 60_000;
+        let wave = |k: i32| DVec2::new(f64::from(k), if (k - n / 2).abs() < 2000 { 0.0 } else { 1e-12 * f64::from(k % 7) });
+        let places: Vec<DVec2> = (0..n).map(wave).collect();
+        assert!(points(&places, &[]).is_ok_and(|all| all.corners.len() > n as usize / 2));
+    }
 
     #[test]
     fn a_cusp_has_the_same_triangles_each_time() {
