@@ -94,7 +94,7 @@ const OUTSIDE: &[&str] = &["std::fs", "std::env", "std::time", "println!", "epri
 
 /// Lines a floor may have, tests included; a higher number is a change of its own, with the reason.
 const CEILINGS: &[(&str, usize)] = &[
-    ("base", 4_550),
+    ("base", 4_600),
     ("geometry", 6_100),
     ("network", 5_150),
     ("surface", 28_200),
