@@ -121,7 +121,16 @@ impl NetFit<'_> {
         let quads = self.fit.face.elements == Elements::Quads;
         let (chart_surface, outline) = (self.fit.chart, &self.halves.outline);
         let most = if quads { self.fit.most().div_ceil(4) } else { self.fit.most() };
-        let task = Task { chart_surface, field: cells, outline, settings: self.fit.settings, lattice, most, limit_check: None };
+        let task = Task {
+            chart_surface,
+            interpolated: None,
+            field: cells,
+            outline,
+            settings: self.fit.settings,
+            lattice,
+            most,
+            limit_check: None,
+        };
         let triangulation = match initial_triangulation(&task, job)? {
             Ok(triangulation) => triangulation,
             Err(reason) => return Ok(Err(reason)),

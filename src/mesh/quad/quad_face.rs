@@ -84,7 +84,7 @@ fn fitted_net(face_input: &FaceInput, face: &Face, chart: &Chart, outline: &Outl
     let settings = OptimizeSettings { smoothing_rounds, ..QUAD_FACE };
     let rules = near(face_input, face, outline);
     let longest = Longest::new(face.size.0, outline, &rules).graded(outline, face_input.input.plan.slope());
-    let fit = FaceFit { face_input, face, surface, chart, outline, limits, longest, settings };
+    let fit = FaceFit { face_input, face, surface, chart, outline, limits, longest, settings, interpolated: None };
     let background = bent.then(|| fit.background_of_squares());
     let slope = rules.slope() / SPACING;
     let sources = Sources::new([rules.items(), &fit.short_edges(background.as_ref(), SPACING)].concat(), slope);
