@@ -36,7 +36,7 @@ pub struct Narrow {
 struct ProximitySettings {
     /// Longest step over the distance to the border that faces it: the triangle with a right angle at its end has 27°.
     max_step_over_gap: f64,
-    /// The same for quads, whose cells have sides of two steps.
+    /// The same for quads, whose cells have sides of two steps: with more, cells of a web have nodes that face each other half a step apart.
     max_step_over_gap_quads: f64,
     /// The least step that facing borders demand, over the size, where no `min_size` is written: a long gap is not filled with
     /// steps as short as it is wide.
@@ -62,7 +62,7 @@ struct ProximitySettings {
 
 const SETTINGS: ProximitySettings = ProximitySettings {
     max_step_over_gap: 2.0,
-    max_step_over_gap_quads: 1.0,
+    max_step_over_gap_quads: 0.55,
     min_step_over_size: 1.0 / 16.0,
     max_steps_of_place: 24,
     shrink_of_place: 0.3,
