@@ -25,6 +25,7 @@ use crate::mesh::request::fault::{MeshLimit, SizeFault};
 use crate::mesh::request::methods::Elements;
 use crate::mesh::request::size_requests::floor_keeps;
 use crate::mesh::request::work::allow;
+use crate::mesh::size::face_settings::is_plane_lattice;
 use crate::mesh::tri::build::{NodePlacement, Task, initial_triangulation};
 use crate::mesh::tri::graded_size::GradedSize;
 use crate::mesh::tri::limit_table::LimitTable;
@@ -65,7 +66,8 @@ impl NetFit<'_> {
             let side = self.too_long(&net);
             let bend = self.lower(field, &net, side, &mut ratios)?;
             // Only sides may exceed their length: limits are proved.
-            let room = NET_FIT.max_side_ratio;
+            let is_strict = round < NET_FIT.strict_tries && !is_plane_lattice(self.fit.face_input.input, self.fit.face);
+            let room = if is_strict { 1.0 } else { NET_FIT.max_side_ratio };
             worst = if bend.over > 1.0 && bend.over * room >= side.over { bend } else { side };
             if side.over <= room && bend.over <= 1.0 {
                 if round >= NET_FIT.tries_without_concave || !has_concave(&net) {

@@ -9,12 +9,9 @@ use crate::mesh::tri::longest::LONGEST;
 use crate::mesh::tri::optimize::OptimizeSettings;
 use crate::mesh::tri::optimize_settings::TREE_FACE;
 
-/// Distance of the nodes of the lattice over the size.
-pub(crate) const SPACING: f64 = SQUARE_SPACING;
-
 /// Optimization of a face of quads.
 pub(crate) const QUAD_FACE: OptimizeSettings =
-    OptimizeSettings { smoothing_rounds: 8, relaxation: 1.0, max_length_ratio: LONGEST / SPACING, ..TREE_FACE };
+    OptimizeSettings { smoothing_rounds: 8, relaxation: 1.0, max_length_ratio: LONGEST / SQUARE_SPACING, ..TREE_FACE };
 
 /// Nets made for wanted lengths until one keeps the limits (`net_fit.rs`).
 pub(crate) struct NetFitSettings {
@@ -30,9 +27,11 @@ pub(crate) struct NetFitSettings {
     pub(crate) max_evening_rounds: usize,
     /// Largest number of rounds in which nodes at long sides are opened.
     pub(crate) max_opening_rounds: usize,
-    /// Largest length of a side over the allowed one: where rows of squares meet. Lengths that are lowered everywhere for one side would
-    /// leave another one.
+    /// Largest length of a side over the allowed one, but in strict tries: where rows of squares meet.
     pub(crate) max_side_ratio: f64,
+    /// Number of tries in which no side of a bent face may be longer than allowed: lengths are lowered everywhere for one that is, and the next
+    /// try has another one.
+    pub(crate) strict_tries: usize,
     /// Factor on lengths where a limit is exceeded, beside the one that the limit demands.
     pub(crate) size_factor: f64,
     /// Least factor on all lengths for the longest side.
@@ -53,6 +52,7 @@ pub(crate) const NET_FIT: NetFitSettings = NetFitSettings {
     max_evening_rounds: 60,
     max_opening_rounds: 8,
     max_side_ratio: 1.2,
+    strict_tries: 1,
     size_factor: 0.9,
     min_spacing_factor: 0.9,
     max_tries: 20,

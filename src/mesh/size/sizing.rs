@@ -80,7 +80,7 @@ impl Sizing {
         effects.check_free_only(input, layout);
         let refined = refine_mapped(input, layout, &wanted.sources);
         let rules = SegmentRules::new(input, layout, &mut effects)?;
-        let of_faces = sizes_of_segments(layout, size);
+        let of_faces = sizes_of_segments(input, layout, size);
         let settings: Vec<SegmentSettings> = of_faces.into_iter().enumerate().map(|(k, size)| rules.of_segment(k, size)).collect();
         for (face, clause) in layout.faces.iter().zip(refined) {
             let open = face.sides.iter().flat_map(|s| s.segments()).any(|k| settings[k].count.is_none());
