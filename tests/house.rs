@@ -99,7 +99,7 @@ const CEILINGS: &[(&str, usize)] = &[
     ("network", 5_150),
     ("surface", 28_200),
     ("model", 6_900),
-    ("mesh", 30_400),
+    ("mesh", 30_850),
     ("io", 17_200),
     ("draw", 3_000),
     ("lang", 30_250),

@@ -17,6 +17,7 @@ use crate::mesh::chart::face_input::{FaceInput, outlined};
 use crate::mesh::chart::outline::{Outline, inside};
 use crate::mesh::request::methods::Elements;
 use crate::mesh::request::sources::distance_to_segment;
+use crate::mesh::size::face_settings::is_plane_lattice;
 use crate::model::glue::{join, root};
 
 /// A place of a segment where steps have to be shorter.
@@ -38,6 +39,8 @@ struct ProximitySettings {
     max_step_over_gap: f64,
     /// The same for quads, whose cells have sides of two steps.
     max_step_over_gap_quads: f64,
+    /// The same for quads of a plane lattice: with more, cells of a web have nodes that face each other half a step apart.
+    max_step_over_gap_in_lattice: f64,
     /// The least step that facing borders demand, over the size, where no `min_size` is written: a long gap is not filled with
     /// steps as short as it is wide.
     min_step_over_size: f64,
@@ -63,6 +66,7 @@ struct ProximitySettings {
 const SETTINGS: ProximitySettings = ProximitySettings {
     max_step_over_gap: 2.0,
     max_step_over_gap_quads: 1.0,
+    max_step_over_gap_in_lattice: 0.55,
     min_step_over_size: 1.0 / 16.0,
     max_steps_of_place: 24,
     shrink_of_place: 0.3,
@@ -195,7 +199,7 @@ impl ProximityScan<'_> {
         let floor = floor(self.context, self.face);
         let point = SETTINGS.min_step_of_place * self.context.input.tolerance.point;
         let deepest = if self.context.input.plan.settings.min_size.is_some() { floor } else { point.min(floor) };
-        let across = if self.face.elements == Elements::Triangles { SETTINGS.max_step_over_gap } else { SETTINGS.max_step_over_gap_quads };
+        let across = if self.face.elements == Elements::Triangles { SETTINGS.max_step_over_gap } else { self.max_step_of_quads() };
         let mut close: Vec<(u32, [u32; 2], f64)> = Vec::new();
         for t in (0..kept.len()).filter(|t| kept[*t]) {
             job::poll();
@@ -265,6 +269,12 @@ impl ProximityScan<'_> {
             }
         }
         found
+    }
+
+    /// Longest step of a face of quads over the distance to the border that faces it.
+    fn max_step_of_quads(&self) -> f64 {
+        let is_lattice = is_plane_lattice(self.context.input, self.face);
+        if is_lattice { SETTINGS.max_step_over_gap_in_lattice } else { SETTINGS.max_step_over_gap_quads }
     }
 
     /// For each node the other ends of its edges.
