@@ -4,7 +4,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::base::math::powi;
-use crate::base::tolerance::WHOLE_NUMBER;
+use crate::base::tolerance::{INTERPOLATED, WHOLE_NUMBER};
 use crate::mesh::chart::affine::Chart;
 use crate::mesh::chart::outline::Outline;
 use crate::mesh::chart::parametric_surface::{LocalExpansion, ParametricSurface, Spot};
@@ -26,7 +26,7 @@ struct InterpolationSettings {
 }
 
 const SETTINGS: InterpolationSettings =
-    InterpolationSettings { first_cells: 2, max_error: 1e-4, gain_of_halving: 4.0, max_places_per_node: 1.0, min_nodes: 150.0 };
+    InterpolationSettings { first_cells: 2, max_error: INTERPOLATED, gain_of_halving: 4.0, max_places_per_node: 1.0, min_nodes: 150.0 };
 
 /// A chart interpolated over the box of a face's parameters.
 pub struct InterpolatedChart<'a> {

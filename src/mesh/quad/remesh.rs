@@ -4,6 +4,7 @@ use glam::DVec2;
 
 use crate::base::fault::Result;
 use crate::base::job::Job;
+use crate::base::tolerance::FLAT_CORNER;
 use crate::base::work;
 use crate::mesh::chart::halves::NONE;
 use crate::mesh::quad::cavity::{Content, EditableNet};
@@ -146,7 +147,7 @@ impl Remesh<'_> {
         let step = self.input.always;
         let strain = |xy: &[DVec2], node: u32| -> f64 {
             let round = faces.iter().filter(|f| f.contains(&node));
-            round.map(|f| least_sine(f.map(|n| xy[n as usize]))).map(|q| 1.0 / q.max(1e-3)).map(|x| x * x * x * x).sum()
+            round.map(|f| least_sine(f.map(|n| xy[n as usize]))).map(|q| 1.0 / q.max(FLAT_CORNER)).map(|x| x * x * x * x).sum()
         };
         if xy.len() > n {
             for reach in REMESH.steps {
