@@ -94,12 +94,12 @@ const OUTSIDE: &[&str] = &["std::fs", "std::env", "std::time", "println!", "epri
 
 /// Lines a floor may have, tests included; a higher number is a change of its own, with the reason.
 const CEILINGS: &[(&str, usize)] = &[
-    ("base", 4_600),
+    ("base", 4_650),
     ("geometry", 6_100),
     ("network", 5_150),
     ("surface", 28_200),
     ("model", 6_900),
-    ("mesh", 30_400),
+    ("mesh", 31_200),
     ("io", 17_200),
     ("draw", 3_000),
     ("lang", 30_250),

@@ -279,6 +279,7 @@ fn triangulated(bytes: &[u8]) -> bool {
         return false;
     }
     let task = Task {
+        interpolated: None,
         chart_surface: &surface,
         field: &field,
         outline: &outline,

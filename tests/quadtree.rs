@@ -186,7 +186,16 @@ mod plate {
                 max_length_ratio: 1.3,
             };
             let (field, lattice) = (UniformSize(4.0 * 0.8), NodePlacement::Tree);
-            let task = Task { chart_surface: &Flat, field: &field, outline: &outline, lattice, settings, most: 100_000, limit_check: None };
+            let task = Task {
+                interpolated: None,
+                chart_surface: &Flat,
+                field: &field,
+                outline: &outline,
+                lattice,
+                settings,
+                most: 100_000,
+                limit_check: None,
+            };
             let triangulation = triangulate(&task, &Job::new()).unwrap().unwrap().triangulation;
             figures(&triangulation.p, triangulation.tri.iter().copied())
         };

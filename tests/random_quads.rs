@@ -61,9 +61,8 @@ fn figures(mesh: &Mesh) -> Figures {
     Figures { mean: sum / mesh.quads.len() as f64, worst, irregular, quads: mesh.quads.len() }
 }
 
-/// The least scaled Jacobian that all ten reach. The aim is 0.7: in webs one cell wide of two of them, cells have two nodes of the border each that
-/// face each other half a step apart.
-const WORST: f64 = 0.14;
+/// The least scaled Jacobian that all ten reach. The aim is 0.7, which nine of ten reach.
+const WORST: f64 = 0.69;
 
 /// The least of the mean and worst qualities, and the largest share of irregular nodes, of all scripts with a change each.
 fn floors(change: impl Fn(&str) -> String) -> (f64, f64, f64) {
@@ -81,12 +80,12 @@ fn floors(change: impl Fn(&str) -> String) -> (f64, f64, f64) {
 #[test]
 fn plates_not_met_before() {
     let (mean, worst, irregular) = floors(str::to_owned);
-    assert!(mean >= 0.95 && worst >= WORST && irregular <= 0.1, "{mean} {worst} {irregular}");
+    assert!(mean >= 0.968 && worst >= WORST && irregular <= 0.046, "{mean} {worst} {irregular}");
 }
 
 /// With `regular` few nodes inside have other than four quads.
 #[test]
 fn plates_with_few_irregular_nodes() {
     let (mean, worst, irregular) = floors(|text| text.replace("elements: quads", "elements: quads  regular: true"));
-    assert!(mean >= 0.95 && worst >= WORST && irregular <= 0.1, "{mean} {worst} {irregular}");
+    assert!(mean >= 0.968 && worst >= WORST && irregular <= 0.035, "{mean} {worst} {irregular}");
 }

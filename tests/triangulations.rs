@@ -136,6 +136,7 @@ fn plate(surface: &dyn ParametricSurface, random: &mut Random) -> Triangulation 
     outline.lines.extend([[first, first + 1], [first + 1, first + 2]]);
     let field = UniformSize(0.7);
     let task = Task {
+        interpolated: None,
         chart_surface: surface,
         field: &field,
         outline: &outline,

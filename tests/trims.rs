@@ -68,6 +68,7 @@ fn spiked_loops_make_sound_faces_or_say_why() {
         let (even, by_place) = (UniformSize(size), Graded(size));
         let field: &dyn SizeField = if graded { &by_place } else { &even };
         let task = Task {
+            interpolated: None,
             chart_surface: &chart_surface,
             field,
             outline: &outline,
@@ -101,6 +102,7 @@ fn holes_of_any_size_are_kept() {
             add_loop(&mut outline, &chart_surface, &star(center, &vec![r; *n], 0.3), size);
         }
         let task = Task {
+            interpolated: None,
             chart_surface: &chart_surface,
             field: &UniformSize(size),
             outline: &outline,
@@ -138,6 +140,7 @@ fn a_plate_with_holes_is_better_than_frontal_meshers() {
         max_length_ratio: 1.4,
     };
     let task = Task {
+        interpolated: None,
         chart_surface: &chart_surface,
         field: &UniformSize(size),
         outline: &outline,

@@ -2,7 +2,9 @@
 //!
 //! Whoever helps works for the job and the budget of the thread that asked, and looks at the job before each item. The only place that knows rayon. Without the feature `parallel` every function here is a plain loop.
 
+use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 use super::{job, work};
 
@@ -47,25 +49,54 @@ impl Helper {
     }
 }
 
+/// Pieces of work for each thread: many enough that none waits long for another one.
+#[cfg(feature = "parallel")]
+const PIECES_PER_THREAD: usize = 32;
+
+/// Consecutive ranges of `0..n` for several threads; one for all of it where there is one thread.
+fn ranges(n: usize) -> impl ExactSizeIterator<Item = Range<usize>> {
+    #[cfg(feature = "parallel")]
+    let pieces = pool().map_or(1, |pool| n.min(PIECES_PER_THREAD * pool.current_num_threads())).max(1);
+    #[cfg(not(feature = "parallel"))]
+    let pieces = 1;
+    (0..pieces).map(move |k| n * k / pieces..n * (k + 1) / pieces)
+}
+
+/// Calls `work` with each number below `n`. Not generic: what a caller adds to the program is its closure alone.
+fn for_each(n: usize, work: &(dyn Fn(usize) + Sync)) {
+    #[cfg(feature = "parallel")]
+    if n > 1
+        && let Some(pool) = pool()
+    {
+        use rayon::prelude::*;
+        let helper = Helper::of_this_thread();
+        pool.install(|| (0..n).into_par_iter().for_each_init(|| helper.enter(), |_, k| work(k)));
+        return;
+    }
+    (0..n).for_each(work);
+}
+
 /// `[f(0), f(1), … f(n - 1)]`, made on several threads when `n > 1`.
 pub fn map<T: Send>(n: usize, f: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
-    #[cfg(feature = "parallel")]
-    if n > 1 {
-        use rayon::prelude::*;
-        if let Some(pool) = pool() {
-            let helper = Helper::of_this_thread();
-            let item = |_: &mut HelpingThread, k: usize| {
-                job::poll();
-                f(k)
-            };
-            return pool.install(|| (0..n).into_par_iter().map_init(|| helper.enter(), item).collect());
-        }
-    }
-    let item = |k: usize| {
-        job::poll();
-        f(k)
+    let piece = |range: Range<usize>| -> Vec<T> {
+        let item = |k: usize| {
+            job::poll();
+            f(k)
+        };
+        range.map(item).collect()
     };
-    (0..n).map(item).collect()
+    let ranges = ranges(n);
+    if ranges.len() == 1 {
+        return piece(0..n);
+    }
+    let pieces: Vec<_> = ranges.map(|range| Mutex::new((range, Vec::new()))).collect();
+    for_each(pieces.len(), &|k| {
+        let mut own = pieces[k].lock().unwrap_or_else(PoisonError::into_inner);
+        own.1 = piece(own.0.clone());
+    });
+    let mut all = Vec::with_capacity(n);
+    pieces.into_iter().for_each(|own| all.append(&mut own.into_inner().unwrap_or_else(PoisonError::into_inner).1));
+    all
 }
 
 /// Like [`map`] for work that may fail; the failure of the smallest index wins.
@@ -75,24 +106,11 @@ pub fn try_map<T: Send, E: Send>(n: usize, f: impl Fn(usize) -> Result<T, E> + S
 
 /// Calls `f(k, part)` on consecutive parts of `items` of `size` items (the last may be shorter).
 pub fn chunks_mut<T: Send>(items: &mut [T], size: usize, f: impl Fn(usize, &mut [T]) + Sync + Send) {
-    let size = size.max(1);
-    #[cfg(feature = "parallel")]
-    if items.len() > size {
-        use rayon::prelude::*;
-        if let Some(pool) = pool() {
-            let helper = Helper::of_this_thread();
-            let one = |_: &mut HelpingThread, (k, part): (usize, &mut [T])| {
-                job::poll();
-                f(k, part);
-            };
-            pool.install(|| items.par_chunks_mut(size).enumerate().for_each_init(|| helper.enter(), one));
-            return;
-        }
-    }
-    for (k, part) in items.chunks_mut(size).enumerate() {
+    let parts: Vec<_> = items.chunks_mut(size.max(1)).map(Mutex::new).collect();
+    for_each(parts.len(), &|k| {
         job::poll();
-        f(k, part);
-    }
+        f(k, &mut parts[k].lock().unwrap_or_else(PoisonError::into_inner));
+    });
 }
 
 /// Whether this thread leaves its work by unwinding: another reason to leave would end the program.

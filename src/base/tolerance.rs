@@ -114,6 +114,10 @@ pub const NEAREST_PLACE: f64 = 1e-3;
 pub const BESIDE_TRIANGLE: f64 = 1e-9;
 /// A node nearer to an edge of a border, in the chart, than this share of the side of the cells about it lies on the edge.
 pub const ON_EDGE: f64 = 1e-3;
+/// How far an interpolated surface may lie beside the surface itself, over the least length of elements.
+pub const INTERPOLATED: f64 = 1e-4;
+/// Sine of a corner of a quad below which all are as bad.
+pub const FLAT_CORNER: f64 = 1e-3;
 /// Damping of the second derivatives of a nearest quadratic, as a share of the sum of all squares.
 pub const DAMPED_BENDS: f64 = 1e-4;
 /// Damping of its first ones.

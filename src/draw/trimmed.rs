@@ -82,6 +82,7 @@ fn filled(surface: &Surface, mut outline: Outline, places: &[(f64, f64)], fine: 
         max_length_ratio: f64::INFINITY,
     };
     let task = Task {
+        interpolated: None,
         chart_surface: &chart,
         field: &field,
         outline: &outline,

@@ -76,6 +76,21 @@ impl Chart {
         self.evaluator().jet(u, v)
     }
 
+    /// A point with its derivatives by the chart's x and y, from those by u and v.
+    pub fn spot_of(&self, [p, du, dv]: [DVec3; 3]) -> Spot {
+        let dx = du * self.by.0;
+        Spot { p, dx, dy: (dv - dx * self.b) * self.by.1 }
+    }
+
+    /// The same to second order.
+    pub fn expansion_of(&self, jet: &Jet2) -> LocalExpansion {
+        let (by_x, by_y) = self.by;
+        let dxx = jet.duu * (by_x * by_x);
+        let dxv = jet.duv * by_x;
+        let bends = [dxx, (dxv - dxx * self.b) * by_y, (jet.dvv - (dxv * 2.0 - dxx * self.b) * self.b) * (by_y * by_y)];
+        LocalExpansion { spot: self.spot_of([jet.p, jet.du, jet.dv]), bends }
+    }
+
     /// The place of surface parameters in the chart.
     pub fn xy(&self, (u, v): (f64, f64)) -> DVec2 {
         DVec2::new(self.a * u + self.b * v, self.c * v)
@@ -84,19 +99,11 @@ impl Chart {
 
 impl ParametricSurface for Chart {
     fn spot(&self, xy: DVec2) -> Spot {
-        let (u, v) = self.uv(xy);
-        let [p, du, dv] = self.tangents((u, v));
-        let dx: DVec3 = du * self.by.0;
-        Spot { p, dx, dy: (dv - dx * self.b) * self.by.1 }
+        self.spot_of(self.tangents(self.uv(xy)))
     }
 
     fn expansion(&self, xy: DVec2) -> LocalExpansion {
-        let jet = self.jet(xy);
-        let (by_x, by_y) = self.by;
-        let (dx, dxx) = (jet.du * by_x, jet.duu * (by_x * by_x));
-        let dxv = jet.duv * by_x;
-        let bends = [dxx, (dxv - dxx * self.b) * by_y, (jet.dvv - (dxv * 2.0 - dxx * self.b) * self.b) * (by_y * by_y)];
-        LocalExpansion { spot: Spot { p: jet.p, dx, dy: (jet.dv - dx * self.b) * by_y }, bends }
+        self.expansion_of(&self.jet(xy))
     }
 
     fn point(&self, xy: DVec2) -> DVec3 {

@@ -6,6 +6,7 @@ pub mod face_border;
 pub mod face_input;
 pub mod halved;
 pub mod halves;
+pub mod interpolated;
 pub mod outline;
 pub mod parametric_surface;
 pub mod rings;

@@ -45,6 +45,11 @@ impl Outline {
         twins
     }
 
+    /// Area inside the loops in the chart, about that in space.
+    pub fn area(&self) -> f64 {
+        0.5 * self.loops.iter().map(|[a, b]| self.xy[*a as usize].perp_dot(self.xy[*b as usize])).sum::<f64>().abs()
+    }
+
     /// Length of an edge in space.
     pub fn length(&self, [a, b]: [u32; 2]) -> f64 {
         self.p[a as usize].distance(self.p[b as usize])

@@ -3,8 +3,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use glam::DVec2;
+
 use crate::base::job;
 use crate::mesh::chart::halves::NONE;
+use crate::mesh::chart::parametric_surface::{SizeField, Spot};
 use crate::mesh::quad::net::Net;
 
 /// A net that changes quad by quad.
@@ -27,10 +30,61 @@ impl<'a> EditableNet<'a> {
         Self { net, of, alive }
     }
 
+    /// Puts other faces into a cavity of a plane net.
+    pub fn replace(&mut self, content: &Content, plane: &Spot, field: &dyn SizeField) {
+        let Self { net, of, alive } = self;
+        content.faces.iter().for_each(|f| alive[*f as usize] = false);
+        content.inner.iter().for_each(|n| of[*n as usize].clear());
+        content.ring.iter().for_each(|n| of[*n as usize].retain(|f| alive[*f as usize]));
+        let (first, normal) = (net.p.len() as u32, plane.normal());
+        for xy in content.xy {
+            let p = plane.p + plane.dx * xy.x + plane.dy * xy.y;
+            net.p.push(p);
+            net.xy.push(*xy);
+            net.normal.push(normal);
+            net.size.push(field.size(*xy, p));
+            of.push(Vec::with_capacity(4));
+        }
+        let corners = content.ring.len() as u32;
+        let node = |n: u32| content.ring.get(n as usize).copied().unwrap_or(first + n.saturating_sub(corners));
+        for new in content.new {
+            let face = new.map(node);
+            face.iter().for_each(|n| of[*n as usize].push(net.face.len() as u32));
+            net.face.push(face);
+            alive.push(true);
+        }
+    }
+
+    /// Takes out the faces and nodes that are gone; gives the new numbers of nodes.
+    pub fn compact(self) -> Vec<u32> {
+        let Self { net, of, alive } = self;
+        let mut number = 0;
+        net.face.retain(|_| {
+            number += 1;
+            alive[number - 1]
+        });
+        let fixed = net.fixed as usize;
+        net.keep_nodes(|n| n < fixed || !of[n].is_empty())
+    }
+
     /// Whether it is an inner node without four faces.
     pub fn is_irregular(&self, node: u32) -> bool {
         node >= self.net.fixed && !matches!(self.of[node as usize].len(), 0 | 4)
     }
+}
+
+/// New faces of a cavity.
+pub(super) struct Content<'a> {
+    /// Faces that go.
+    pub faces: &'a [u32],
+    /// Nodes that go.
+    pub inner: &'a [u32],
+    /// Nodes round the cavity.
+    pub ring: &'a [u32],
+    /// Corners of the new faces: numbers below that of the nodes round the cavity are theirs, the others of new nodes.
+    pub new: &'a [[u32; 4]],
+    /// Places of new nodes.
+    pub xy: &'a [DVec2],
 }
 
 /// Some faces of a net.

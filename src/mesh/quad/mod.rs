@@ -2,6 +2,7 @@
 
 mod cavity;
 pub mod collapse;
+mod disk;
 pub mod equalize;
 pub mod limit_repair;
 pub mod net;
@@ -14,8 +15,10 @@ pub mod pair;
 mod pattern;
 mod placements;
 pub mod plane;
+mod polygon;
 pub mod quad_face;
 pub mod regular;
+mod remesh;
 pub mod settings;
 pub mod smooth;
 pub mod split;

@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use crate::base::fault::Result;
 use crate::base::job::{self, Job};
 use crate::mesh::chart::halves::{Halves, NONE};
-use crate::mesh::chart::parametric_surface::{ParametricSurface, SizeField, UniformSize};
+use crate::mesh::chart::parametric_surface::{ParametricSurface, SizeField, Spot, UniformSize};
 use crate::mesh::data::quality::is_concave;
 use crate::mesh::quad::collapse::collapse;
 use crate::mesh::quad::equalize::Sides;
@@ -16,7 +16,8 @@ use crate::mesh::quad::odd::whole_sides;
 use crate::mesh::quad::open::open;
 use crate::mesh::quad::pair::{SingleTriangles, pair};
 use crate::mesh::quad::regular::{RegularInput, regularize};
-use crate::mesh::quad::settings::{CELL_SINGLES, COLLAPSE, MIXED_SINGLES, NET_FIT};
+use crate::mesh::quad::remesh::remesh;
+use crate::mesh::quad::settings::{CELL_SINGLES, COLLAPSE, MIXED_SINGLES, NET_FIT, REMESH};
 use crate::mesh::quad::smooth::Smoother;
 use crate::mesh::quad::split::split;
 use crate::mesh::quad::swap::Swapper;
@@ -24,6 +25,7 @@ use crate::mesh::request::fault::{MeshLimit, SizeFault};
 use crate::mesh::request::methods::Elements;
 use crate::mesh::request::size_requests::floor_keeps;
 use crate::mesh::request::work::allow;
+use crate::mesh::size::face_settings::is_plane_lattice;
 use crate::mesh::tri::build::{NodePlacement, Task, initial_triangulation};
 use crate::mesh::tri::graded_size::GradedSize;
 use crate::mesh::tri::limit_table::LimitTable;
@@ -64,7 +66,8 @@ impl NetFit<'_> {
             let side = self.too_long(&net);
             let bend = self.lower(field, &net, side, &mut ratios)?;
             // Only sides may exceed their length: limits are proved.
-            let room = if round >= NET_FIT.strict_tries { NET_FIT.max_side_ratio } else { 1.0 };
+            let is_strict = round < NET_FIT.strict_tries && !is_plane_lattice(self.fit.face_input.input, self.fit.face);
+            let room = if is_strict { 1.0 } else { NET_FIT.max_side_ratio };
             worst = if bend.over > 1.0 && bend.over * room >= side.over { bend } else { side };
             if side.over <= room && bend.over <= 1.0 {
                 if round >= NET_FIT.tries_without_concave || !has_concave(&net) {
@@ -111,6 +114,7 @@ impl NetFit<'_> {
             if self.regularize(&mut net, wanted, job)? || fewer {
                 self.smooth(&mut net, wanted, job)?;
             }
+            self.remesh(&mut net, wanted, job)?;
         }
         self.shorten(&mut net, wanted, job)?;
         Ok(Ok(net))
@@ -121,7 +125,16 @@ impl NetFit<'_> {
         let quads = self.fit.face.elements == Elements::Quads;
         let (chart_surface, outline) = (self.fit.chart, &self.halves.outline);
         let most = if quads { self.fit.most().div_ceil(4) } else { self.fit.most() };
-        let task = Task { chart_surface, field: cells, outline, settings: self.fit.settings, lattice, most, limit_check: None };
+        let task = Task {
+            chart_surface,
+            interpolated: None,
+            field: cells,
+            outline,
+            settings: self.fit.settings,
+            lattice,
+            most,
+            limit_check: None,
+        };
         let triangulation = match initial_triangulation(&task, job)? {
             Ok(triangulation) => triangulation,
             Err(reason) => return Ok(Err(reason)),
@@ -149,7 +162,26 @@ impl NetFit<'_> {
     /// Fills cavities about irregular nodes anew where that is asked for; whether any was.
     fn regularize(&self, net: &mut Net, field: &dyn SizeField, job: &Job) -> Result<bool> {
         let Some(plane) = self.fit.chart.plane().filter(|_| self.is_regular()) else { return Ok(false) };
-        regularize(net, &RegularInput { plane, field, always: self.fit.longest.always() }, job)
+        regularize(net, &self.regular_input(plane, field), job)
+    }
+
+    fn regular_input<'a>(&self, plane: Spot, field: &'a dyn SizeField) -> RegularInput<'a> {
+        RegularInput { plane, field, always: self.fit.longest.always(), has_lines: !self.halves.outline.lines.is_empty() }
+    }
+
+    /// Fills cavities about bad quads anew.
+    fn remesh(&self, net: &mut Net, field: &dyn SizeField, job: &Job) -> Result<()> {
+        let Some(plane) = self.fit.chart.plane().filter(|_| self.fit.settings.smoothing_rounds > 0) else { return Ok(()) };
+        for _ in 0..REMESH.max_rounds {
+            let nodes = remesh(net, &self.regular_input(plane, field), job)?;
+            if nodes.is_empty() {
+                break;
+            }
+            let mut smoother = Smoother::new(net, self.fit.chart, field).only(&nodes);
+            smoother.smooth(self.fit.settings.smoothing_rounds, job)?;
+            smoother.repair(NET_FIT.min_quality, NET_FIT.max_repair_rounds, job)?;
+        }
+        Ok(())
     }
 
     /// Takes out quads between irregular nodes; whether there were any.

@@ -1,7 +1,7 @@
 //! Which placement of nodes a face of quads keeps.
 //!
-//! In webs one cell wide rectangles about holes may leave cells that no smoothing makes good. Where a quad is worse than
-//! [`PLACEMENTS`] allow, the face is made again with rows that follow every border, and the better net is kept.
+//! Where few irregular nodes are asked for, a plane face is made with as many holes in its lattice as a search finds room for, and with those that
+//! have room; the better net is kept.
 
 use crate::base::fault::Result;
 use crate::base::job::{self, Job};
@@ -9,7 +9,7 @@ use crate::mesh::chart::parametric_surface::ParametricSurface;
 use crate::mesh::quad::net::Net;
 use crate::mesh::quad::net_fit::NetFit;
 use crate::mesh::quad::settings::PLACEMENTS;
-use crate::mesh::request::methods::{Elements, Method};
+use crate::mesh::request::methods::Method;
 use crate::mesh::tri::build::NodePlacement;
 use crate::mesh::tri::front::HolesInLattice;
 use crate::mesh::tri::graded_size::GradedSize;
@@ -27,14 +27,8 @@ impl NetFit<'_> {
             Ok(net) => net,
             Err(reason) => return Ok(Err(reason)),
         };
-        if self.fit.face.elements != Elements::Quads || self.fit.chart.plane().is_none() {
-            return Ok(Ok(best));
-        }
-        if is_regular {
+        if is_regular && self.fit.chart.plane().is_some() {
             self.improve(&mut best, HolesInLattice::WithRoom, field, job)?;
-        }
-        if least(&best) < PLACEMENTS.min_quality {
-            self.improve(&mut best, HolesInLattice::None, field, job)?;
         }
         Ok(Ok(best))
     }

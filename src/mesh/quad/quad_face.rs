@@ -17,13 +17,14 @@ use crate::mesh::data::face_mesh::{FaceMesh, FreeInside};
 use crate::mesh::deviation::edge_length;
 use crate::mesh::quad::net::Net;
 use crate::mesh::quad::net_fit::{NetFit, nodes};
-use crate::mesh::quad::settings::{NET_FIT, QUAD_FACE, SPACING};
+use crate::mesh::quad::settings::{NET_FIT, QUAD_FACE};
 use crate::mesh::request::decider::Decider;
 use crate::mesh::request::limits::Limits;
 use crate::mesh::request::methods::Elements;
 use crate::mesh::request::sources::Sources;
+use crate::mesh::size::face_settings::square_spacing;
 use crate::mesh::tri::graded_size::{Background, GradedSize};
-use crate::mesh::tri::longest::Longest;
+use crate::mesh::tri::longest::{LONGEST, Longest};
 use crate::mesh::tri::no_mesh::{NoMesh, Outcome, fault};
 use crate::mesh::tri::optimize::OptimizeSettings;
 use crate::mesh::tri::triangle_fit::{FaceFit, near};
@@ -81,14 +82,15 @@ fn fitted_net(face_input: &FaceInput, face: &Face, chart: &Chart, outline: &Outl
     let limits = Limits::of(face_input.input);
     let bent = !surface.is_flat() && (limits.chord.is_some() || limits.angle.is_some());
     let smoothing_rounds = face_input.input.plan.settings.smooth.map_or(QUAD_FACE.smoothing_rounds, |n| n.0 as usize);
-    let settings = OptimizeSettings { smoothing_rounds, ..QUAD_FACE };
+    let spacing = square_spacing(face_input.input, face);
+    let settings = OptimizeSettings { smoothing_rounds, max_length_ratio: LONGEST / spacing, ..QUAD_FACE };
     let rules = near(face_input, face, outline);
     let longest = Longest::new(face.size.0, outline, &rules).graded(outline, face_input.input.plan.slope());
-    let fit = FaceFit { face_input, face, surface, chart, outline, limits, longest, settings };
+    let fit = FaceFit { face_input, face, surface, chart, outline, limits, longest, settings, interpolated: None };
     let background = bent.then(|| fit.background_of_squares());
-    let slope = rules.slope() / SPACING;
-    let sources = Sources::new([rules.items(), &fit.short_edges(background.as_ref(), SPACING)].concat(), slope);
-    let mut field = GradedSize { sources: &sources, range: (face.size.0, face_input.wanted.written), spacing: SPACING, background };
+    let slope = rules.slope() / spacing;
+    let sources = Sources::new([rules.items(), &fit.short_edges(background.as_ref(), spacing)].concat(), slope);
+    let mut field = GradedSize { sources: &sources, range: (face.size.0, face_input.wanted.written), spacing, background };
     let net_fit = NetFit { fit: &fit, halves };
     Ok(net_fit.fitted(&mut field, job)?.map(|net| {
         let deciders = fit.deciders(&field, &nodes(&net));
@@ -100,7 +102,7 @@ impl FaceFit<'_> {
     /// Distances of nodes of squares by the bends of the surface.
     fn background_of_squares(&self) -> Background {
         let whole = self.outline.xy.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), xy| (l.min(*xy), h.max(*xy)));
-        let size = self.face.size.0 * SPACING;
+        let size = self.face.size.0 * square_spacing(self.face_input.input, self.face);
         let wanted =
             |xy: DVec2| (NET_FIT.square_side * edge_length::wanted(&self.chart.jet(xy), self.limits.chord, self.limits.angle)).min(size);
         Background::new(self.chart, whole, 1.0 + self.face_input.input.plan.slope(), &wanted)

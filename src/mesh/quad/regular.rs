@@ -6,7 +6,7 @@ use crate::base::fault::Result;
 use crate::base::job::Job;
 use crate::base::work;
 use crate::mesh::chart::parametric_surface::{SizeField, Spot};
-use crate::mesh::quad::cavity::{Cavity, EditableNet, Rim};
+use crate::mesh::quad::cavity::{Cavity, Content, EditableNet, Rim};
 use crate::mesh::quad::net::Net;
 use crate::mesh::quad::pattern::{Pattern, irregular, pattern};
 use crate::mesh::quad::plane::least_sine;
@@ -19,6 +19,8 @@ pub(super) struct RegularInput<'a> {
     pub field: &'a dyn SizeField,
     /// Length up to which sides are allowed anywhere, model units.
     pub always: f64,
+    /// Whether lines run through it.
+    pub has_lines: bool,
 }
 
 /// Fills cavities anew until no irregular node goes; whether any went.
@@ -40,15 +42,8 @@ pub(super) fn regularize(net: &mut Net, input: &RegularInput, job: &Job) -> Resu
             }
         }
     }
-    let EditableNet { net, of, alive } = regular.of;
     if any {
-        let mut number = 0;
-        net.face.retain(|_| {
-            number += 1;
-            alive[number - 1]
-        });
-        let fixed = net.fixed as usize;
-        net.keep_nodes(|n| n < fixed || !of[n].is_empty());
+        regular.of.compact();
     }
     Ok(any)
 }
@@ -104,34 +99,10 @@ impl Regular<'_> {
             least_sine(p) >= least && (0..4).all(fits)
         });
         if is_good {
-            self.put(rim, &ring, &new, &xy[border..]);
+            let content = Content { faces: &self.cavity.faces, inner: &rim.inner, ring: &ring, new: &new.faces, xy: &xy[border..] };
+            self.of.replace(&content, &self.input.plane, self.input.field);
         }
         is_good
-    }
-
-    fn put(&mut self, rim: &Rim, ring: &[u32], new: &Pattern, xy: &[DVec2]) {
-        let EditableNet { net, of, alive } = &mut self.of;
-        for f in &self.cavity.faces {
-            alive[*f as usize] = false;
-        }
-        rim.inner.iter().for_each(|n| of[*n as usize].clear());
-        ring.iter().for_each(|n| of[*n as usize].retain(|f| alive[*f as usize]));
-        let (first, plane) = (net.p.len() as u32, &self.input.plane);
-        for xy in xy {
-            let p = plane.p + plane.dx * xy.x + plane.dy * xy.y;
-            net.p.push(p);
-            net.xy.push(*xy);
-            net.normal.push(plane.normal());
-            net.size.push(self.input.field.size(*xy, p));
-            of.push(Vec::with_capacity(4));
-        }
-        let node = |n: u32| ring.get(n as usize).copied().unwrap_or(first + n - ring.len() as u32);
-        for corners in &new.faces {
-            let face = corners.map(node);
-            face.iter().for_each(|n| of[*n as usize].push(net.face.len() as u32));
-            net.face.push(face);
-            alive.push(true);
-        }
     }
 }
 
@@ -202,7 +173,12 @@ mod tests {
             (of.net.fixed..of.net.p.len() as u32).filter(|n| of.is_irregular(*n)).count()
         };
         assert_eq!(odd(&mut net), 4);
-        let input = RegularInput { plane: Spot { p: DVec3::ZERO, dx: DVec3::X, dy: DVec3::Y }, field: &UniformSize(1.0), always: 2.0 };
+        let input = RegularInput {
+            plane: Spot { p: DVec3::ZERO, dx: DVec3::X, dy: DVec3::Y },
+            field: &UniformSize(1.0),
+            always: 2.0,
+            has_lines: false,
+        };
         assert!(regularize(&mut net, &input, &Job::default()).unwrap());
         assert_eq!((odd(&mut net), net.face.len()), (0, 81));
         assert_eq!(net.xy[..border.len()], fixed);

@@ -9,12 +9,9 @@ use crate::mesh::tri::longest::LONGEST;
 use crate::mesh::tri::optimize::OptimizeSettings;
 use crate::mesh::tri::optimize_settings::TREE_FACE;
 
-/// Distance of the nodes of the lattice over the size.
-pub(crate) const SPACING: f64 = SQUARE_SPACING;
-
 /// Optimization of a face of quads.
 pub(crate) const QUAD_FACE: OptimizeSettings =
-    OptimizeSettings { smoothing_rounds: 8, relaxation: 1.0, max_length_ratio: LONGEST / SPACING, ..TREE_FACE };
+    OptimizeSettings { smoothing_rounds: 8, relaxation: 1.0, max_length_ratio: LONGEST / SQUARE_SPACING, ..TREE_FACE };
 
 /// Nets made for wanted lengths until one keeps the limits (`net_fit.rs`).
 pub(crate) struct NetFitSettings {
@@ -30,10 +27,10 @@ pub(crate) struct NetFitSettings {
     pub(crate) max_evening_rounds: usize,
     /// Largest number of rounds in which nodes at long sides are opened.
     pub(crate) max_opening_rounds: usize,
-    /// Largest length of a side over the allowed one after the strict tries: where rows of squares meet.
+    /// Largest length of a side over the allowed one, but in strict tries: where rows of squares meet.
     pub(crate) max_side_ratio: f64,
-    /// Number of tries in which no side may be longer than allowed: lengths are lowered everywhere for one that is, and the next try has
-    /// another one.
+    /// Number of tries in which no side of a bent face may be longer than allowed: lengths are lowered everywhere for one that is, and the next
+    /// try has another one.
     pub(crate) strict_tries: usize,
     /// Factor on lengths where a limit is exceeded, beside the one that the limit demands.
     pub(crate) size_factor: f64,
@@ -133,6 +130,63 @@ pub(crate) struct RegularSettings {
 pub(crate) const REGULAR: RegularSettings =
     RegularSettings { max_faces: [60, 250, 1000], max_rounds: 3, min_quality: 0.65, min_side: 0.4, sweeps: 12, face_work: 4 };
 
+/// Quads of polygons (`polygon.rs`).
+pub(crate) struct PolygonSettings {
+    /// Least quality of a quad, before nodes inside are moved.
+    pub(crate) min_quality: f64,
+}
+
+pub(crate) const POLYGON: PolygonSettings = PolygonSettings { min_quality: 0.05 };
+
+/// Cavities about bad quads filled anew (`remesh.rs`).
+pub(crate) struct RemeshSettings {
+    /// Quality below which quads are bad.
+    pub(crate) min_quality: f64,
+    /// Quality from which on better ones are worth no more.
+    pub(crate) enough: f64,
+    /// Least gain.
+    pub(crate) min_gain: f64,
+    /// What an irregular node costs in quality.
+    pub(crate) irregular_cost: f64,
+    /// Largest number of corners of a cavity.
+    pub(crate) max_corners: usize,
+    /// The same where it gets two nodes inside.
+    pub(crate) max_corners_of_two: usize,
+    /// Largest number of nodes inside before.
+    pub(crate) max_old_inner: usize,
+    /// Largest sum of the costs of new quads (`polygon.rs`).
+    pub(crate) max_cost: f64,
+    /// Largest number of ways to fill a cavity whose nodes are moved.
+    pub(crate) max_optimized: usize,
+    /// Steps of the moves of nodes inside, over the longest side that is allowed everywhere.
+    pub(crate) steps: [f64; 4],
+    /// Number of sweeps of each step.
+    pub(crate) sweeps: usize,
+    /// Least side of a quad.
+    pub(crate) min_side: f64,
+    /// Largest number of rounds.
+    pub(crate) max_rounds: usize,
+    /// Work of a corner of a cavity, in evaluations of the surface.
+    pub(crate) corner_work: u64,
+}
+
+pub(crate) const REMESH: RemeshSettings = RemeshSettings {
+    min_quality: 0.7,
+    enough: 0.8,
+    min_gain: 0.02,
+    irregular_cost: 0.01,
+    max_corners: 16,
+    max_corners_of_two: 12,
+    max_old_inner: 6,
+    max_cost: 400.0,
+    max_optimized: 3,
+    steps: [0.2, 0.1, 0.05, 0.02],
+    sweeps: 3,
+    min_side: 0.4,
+    max_rounds: 4,
+    corner_work: 8,
+};
+
 /// Opening of nodes at long sides (`open.rs`).
 pub(crate) struct OpeningSettings {
     /// Least quality of the quads round a node that is opened.
@@ -227,9 +281,9 @@ pub(crate) const LIMIT_REPAIR: LimitRepairSettings = LimitRepairSettings {
     bound_over_sample: 1.1..3.0,
 };
 
-/// When a face is made with another placement of nodes (`placements.rs`).
+/// Which of two placements of nodes a face keeps (`placements.rs`).
 pub(crate) struct PlacementSettings {
-    /// Quality of the worst quad below which it is.
+    /// Quality of the worst quad of either below which that decides, not the number of irregular nodes.
     pub(crate) min_quality: f64,
 }
 

@@ -113,7 +113,7 @@ impl Explanation {
                 (Some((_, r)), _) => Because::Count(rule(r)),
                 _ if d.demand != counts[k] => Because::Neighbours,
                 _ if sizing.spacings[k].is_some() => Because::Varies,
-                _ if d.demand == d.least && d.demand > 1 => Because::Limit,
+                _ if d.unrounded == d.least && d.unrounded > 1 => Because::Limit,
                 (None, Some(r)) => Because::RuleSize(rule(r)),
                 _ => Because::Size,
             };
@@ -170,8 +170,10 @@ impl Explanation {
                 (Because::Neighbours, ..) => "the rows or faces beside it".to_owned(),
             };
             let spacing = sizing.spacings[*first].as_ref().map_or_else(String::new, |spacing| reasons::of_spacing(input, spacing));
+            let raised = decision.count.is_none() && decision.unrounded < decision.demand && decision.demand == self.segments[*first].count;
+            let ring = if raised { reasons::of_ring(decision.unrounded) } else { String::new() };
             lines.push(format!(
-                "strip of {}: {} steps, by {why} (on {}){spacing}",
+                "strip of {}: {} steps, by {why} (on {}){ring}{spacing}",
                 names.join(", "),
                 self.segments[*first].count,
                 layout.name_of(input, *first)

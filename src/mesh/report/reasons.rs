@@ -7,6 +7,7 @@ use crate::mesh::request::decider::{Decider, Tally, Why};
 use crate::mesh::request::input::Input;
 use crate::mesh::request::plan::{Place, Target};
 use crate::mesh::size::border_spacing::BorderSpacing;
+use crate::mesh::size::sizing::STEPS_OF_RING;
 use crate::model::{Course, EdgePart};
 use crate::network::Chain;
 
@@ -102,6 +103,11 @@ pub fn of_spacing(input: &Input, spacing: &BorderSpacing) -> String {
     let part = |(why, share): (Why, f64)| format!("{:.0} % by {}", 100.0 * share, cause(input, why));
     let parts: Vec<String> = spacing.shares().into_iter().map(part).collect();
     format!("; lengths of {:.3} to {:.3} asked for: {}", spacing.least(), spacing.most(), parts.join(", "))
+}
+
+/// "; raised from 14 to a multiple of 4, …" of a closed curve round or in a plane face of quads.
+pub fn of_ring(demand: u32) -> String {
+    format!("; raised from {demand} to a multiple of {STEPS_OF_RING}, with which the rows of a plane face of quads go round it")
 }
 
 /// "; 40 cells, 12 crossed by borders, marks 0 1 2 right at 30 of 31 corners" of a face between lines of constant u and v.

@@ -54,8 +54,12 @@ pub(super) const SPACING_SETTINGS: SpacingSettings = SpacingSettings {
 /// Spacing of the lattice as a share of the size, so that hardly an edge comes out longer than the size allows.
 pub const SPACING: f64 = 0.8;
 
-/// The same of a lattice of squares.
+/// The same of squares on bent faces, in quadtrees, and of quads and triangles.
 pub const SQUARE_SPACING: f64 = 0.85;
+
+/// The same of a lattice of squares on a plane face, which is stretched between its holes: with 0.85 one side in fifty was opened for a further quad,
+/// which has irregular nodes at its ends, and most faces were made twice.
+pub const PLANE_SQUARE_SPACING: f64 = 0.75;
 
 /// First lengths over those that bends allow: triangles are not all equilateral. With more so many break the limit that dividing and
 /// repairing them costs more time than it saves triangles, with less there are more triangles (`docs/notes/free-mesh.md`, 7).

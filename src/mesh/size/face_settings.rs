@@ -7,7 +7,7 @@ use crate::mesh::request::methods::Method;
 use crate::mesh::request::plan::Target;
 use crate::mesh::request::size_requests::least_on;
 use crate::mesh::request::sources::Sources;
-use crate::mesh::size::border_spacing::{SPACING, SQUARE_SPACING};
+use crate::mesh::size::border_spacing::{PLANE_SQUARE_SPACING, SPACING, SQUARE_SPACING};
 use crate::mesh::size::rule_effects::RuleEffects;
 
 /// Gives faces their size, elements and method: those of the last rule on the face, else on its surface, else of the mesh.
@@ -91,13 +91,13 @@ pub(super) fn refine_mapped(input: &Input, layout: &mut Layout, sources: &Source
 
 /// The size of each segment by its faces: the least of theirs, `size` where it has none. Steps on borders of faces that are grown alone
 /// are as long as distances of nodes inside: elements between rows of one length are the best ones.
-pub(super) fn sizes_of_segments(layout: &Layout, size: f64) -> Vec<(f64, Option<usize>)> {
+pub(super) fn sizes_of_segments(input: &Input, layout: &Layout, size: f64) -> Vec<(f64, Option<usize>)> {
     let mut grown = vec![true; layout.pieces.segments.len()];
-    layout.faces.iter().filter(|f| grown_spacing(f).is_none()).flat_map(Face::segments).for_each(|k| grown[k] = false);
+    layout.faces.iter().filter(|f| grown_spacing(input, f).is_none()).flat_map(Face::segments).for_each(|k| grown[k] = false);
     let mut own: Vec<Option<(f64, Option<usize>)>> = vec![None; grown.len()];
     for face in &layout.faces {
         for k in face.segments() {
-            let spacing = grown_spacing(face).filter(|_| grown[k]).unwrap_or(1.0);
+            let spacing = grown_spacing(input, face).filter(|_| grown[k]).unwrap_or(1.0);
             let step = (face.size.0 * spacing, face.size.1);
             if own[k].is_none_or(|least| step.0 < least.0) {
                 own[k] = Some(step);
@@ -108,10 +108,21 @@ pub(super) fn sizes_of_segments(layout: &Layout, size: f64) -> Vec<(f64, Option<
 }
 
 /// Distance of the nodes of a grown lattice over the size; `None` of faces that are made otherwise.
-fn grown_spacing(face: &Face) -> Option<f64> {
+fn grown_spacing(input: &Input, face: &Face) -> Option<f64> {
     match () {
         () if face.is_grown() => Some(SPACING),
-        () if face.takes_quads() && face.method != Method::Quadtree => Some(SQUARE_SPACING),
+        () if face.takes_quads() && face.method != Method::Quadtree => Some(square_spacing(input, face)),
         () => None,
     }
+}
+
+/// Distance of the nodes of a face of quads over the size.
+pub(crate) fn square_spacing(input: &Input, face: &Face) -> f64 {
+    if is_plane_lattice(input, face) { PLANE_SQUARE_SPACING } else { SQUARE_SPACING }
+}
+
+/// Whether a face of quads is a plane with one lattice.
+pub(crate) fn is_plane_lattice(input: &Input, face: &Face) -> bool {
+    let surface = &input.model.surfaces[face.surface.index()].surface;
+    face.takes_quads() && face.method != Method::Quadtree && surface.is_flat()
 }

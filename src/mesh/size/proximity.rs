@@ -17,6 +17,7 @@ use crate::mesh::chart::face_input::{FaceInput, outlined};
 use crate::mesh::chart::outline::{Outline, inside};
 use crate::mesh::request::methods::Elements;
 use crate::mesh::request::sources::distance_to_segment;
+use crate::mesh::size::face_settings::is_plane_lattice;
 use crate::model::glue::{join, root};
 
 /// A place of a segment where steps have to be shorter.
@@ -38,6 +39,11 @@ struct ProximitySettings {
     max_step_over_gap: f64,
     /// The same for quads, whose cells have sides of two steps.
     max_step_over_gap_quads: f64,
+    /// The same for quads of a plane lattice where the gap takes two rows: with more, cells of a web have nodes that face each other half a
+    /// step apart.
+    max_step_over_gap_of_two_rows: f64,
+    /// Longest step of quads of a plane lattice where the gap takes one row, over the size.
+    max_step_of_one_row: f64,
     /// The least step that facing borders demand, over the size, where no `min_size` is written: a long gap is not filled with
     /// steps as short as it is wide.
     min_step_over_size: f64,
@@ -63,6 +69,8 @@ struct ProximitySettings {
 const SETTINGS: ProximitySettings = ProximitySettings {
     max_step_over_gap: 2.0,
     max_step_over_gap_quads: 1.0,
+    max_step_over_gap_of_two_rows: 0.55,
+    max_step_of_one_row: 0.25,
     min_step_over_size: 1.0 / 16.0,
     max_steps_of_place: 24,
     shrink_of_place: 0.3,
@@ -188,6 +196,18 @@ impl ProximityScan<'_> {
         Some(Narrow { segment: step.segment, f: 0.5 * (step.f.0 + step.f.1), size: SETTINGS.half * length, crossing: true })
     }
 
+    /// The longest step of a border that another one faces at a distance, model units.
+    fn longest_step(&self, gap: f64) -> f64 {
+        if self.face.elements == Elements::Triangles {
+            return SETTINGS.max_step_over_gap * gap;
+        }
+        let of_one_row = SETTINGS.max_step_over_gap_quads * gap;
+        if !is_plane_lattice(self.context.input, self.face) {
+            return of_one_row;
+        }
+        of_one_row.min(SETTINGS.max_step_of_one_row * self.face.size.0).max(SETTINGS.max_step_over_gap_of_two_rows * gap)
+    }
+
     /// Steps that are long for what stands over them.
     fn facing(&self, all: &Triangles) -> Vec<Narrow> {
         let p = &self.outline.p;
@@ -195,7 +215,6 @@ impl ProximityScan<'_> {
         let floor = floor(self.context, self.face);
         let point = SETTINGS.min_step_of_place * self.context.input.tolerance.point;
         let deepest = if self.context.input.plan.settings.min_size.is_some() { floor } else { point.min(floor) };
-        let across = if self.face.elements == Elements::Triangles { SETTINGS.max_step_over_gap } else { SETTINGS.max_step_over_gap_quads };
         let mut close: Vec<(u32, [u32; 2], f64)> = Vec::new();
         for t in (0..kept.len()).filter(|t| kept[*t]) {
             job::poll();
@@ -208,7 +227,7 @@ impl ProximityScan<'_> {
                 let (over, edge) = (c[k], [c[(k + 1) % 3], c[(k + 2) % 3]]);
                 let [a, b] = edge.map(|n| p[n as usize]);
                 let gap = distance_to_segment(p[over as usize], a, b);
-                if gap > 0.0 && self.outline.length(edge) > SETTINGS.slack * (across * gap).max(deepest) {
+                if gap > 0.0 && self.outline.length(edge) > SETTINGS.slack * self.longest_step(gap).max(deepest) {
                     close.push((over, edge, gap));
                 }
             }
@@ -245,11 +264,11 @@ impl ProximityScan<'_> {
         }
         let mut found = Vec::new();
         // Each step is seen from both sides of the gap.
-        let deep = narrow.iter().filter(|n| across * n.3 < floor).count() <= 2 * SETTINGS.max_steps_of_place;
+        let deep = narrow.iter().filter(|n| self.longest_step(n.3) < floor).count() <= 2 * SETTINGS.max_steps_of_place;
         for (over, [a, b], t, gap) in narrow {
             let length = self.outline.length([a, b]);
             let least = if deep { deepest.max(floor.min(SETTINGS.shrink_of_place * length)) } else { floor };
-            let size = (across * gap).max(least);
+            let size = self.longest_step(gap).max(least);
             let mut shorten = |edge: [u32; 2], t: f64| {
                 if self.outline.length(edge) > SETTINGS.slack * size
                     && let Some(step) = self.step(edge)

@@ -31,7 +31,7 @@ const MAX_BIASED: u32 = 1 << 20;
 
 /// Steps of a ring in a plane face of quads are a multiple of this: two for each side of a cell, and as many cells along one side of a
 /// hole as along the other.
-const STEPS_OF_RING: u32 = 4;
+pub const STEPS_OF_RING: u32 = 4;
 
 /// What decides the steps of one segment.
 #[derive(Clone, Copy, Debug)]
@@ -46,6 +46,8 @@ pub struct Decision {
     pub least: u32,
     /// The demanded count, `least` or more.
     pub demand: u32,
+    /// What was demanded before that was raised to a multiple of [`STEPS_OF_RING`].
+    pub unrounded: u32,
 }
 
 /// Decisions for all segments, and which rules have decided something so far.
@@ -78,7 +80,7 @@ impl Sizing {
         effects.check_free_only(input, layout);
         let refined = refine_mapped(input, layout, &wanted.sources);
         let rules = SegmentRules::new(input, layout, &mut effects)?;
-        let of_faces = sizes_of_segments(layout, size);
+        let of_faces = sizes_of_segments(input, layout, size);
         let settings: Vec<SegmentSettings> = of_faces.into_iter().enumerate().map(|(k, size)| rules.of_segment(k, size)).collect();
         for (face, clause) in layout.faces.iter().zip(refined) {
             let open = face.sides.iter().flat_map(|s| s.segments()).any(|k| settings[k].count.is_none());
@@ -120,9 +122,9 @@ impl Sizing {
             if count.is_none() && least <= MESH_STEPS {
                 self.refuse_below_floor(input, layout, k, least, apart[k])?;
             }
-            let demand = demand.max(least);
-            let demand = if rings[k] && demand < MAX_COUNT { demand.next_multiple_of(STEPS_OF_RING) } else { demand };
-            self.decisions.push(Decision { count, size, bias, least, demand });
+            let unrounded = demand.max(least);
+            let demand = if rings[k] && unrounded < MAX_COUNT { unrounded.next_multiple_of(STEPS_OF_RING) } else { unrounded };
+            self.decisions.push(Decision { count, size, bias, least, demand, unrounded });
         }
         Ok(())
     }
@@ -179,7 +181,7 @@ impl Sizing {
                 None => {
                     if let (_, Some(rule)) = d.size
                         && d.demand == counts[k]
-                        && d.demand > d.least
+                        && d.unrounded > d.least
                     {
                         self.effects.mark_used(rule);
                     }

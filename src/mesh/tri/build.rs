@@ -29,9 +29,12 @@ pub enum NodePlacement {
 }
 
 /// A face to be triangulated.
+#[derive(Clone, Copy)]
 pub struct Task<'a> {
     /// The surface.
     pub chart_surface: &'a dyn ParametricSurface,
+    /// The surface interpolated, where that is quicker: nodes grow and are smoothed on it before they are put on the surface.
+    pub interpolated: Option<&'a dyn ParametricSurface>,
     /// The wanted lengths.
     pub field: &'a dyn SizeField,
     /// The border.
@@ -54,13 +57,17 @@ pub struct Triangulated {
     pub keeps_limits: bool,
 }
 
+/// Move of a node from the interpolated surface to the surface itself, over the wanted length, from which on the first was no help.
+const MAX_MOVE: f64 = 0.02;
+
 /// Triangulates a face.
 pub fn triangulate(task: &Task, job: &Job) -> Outcome<Triangulated> {
-    let triangulation = match initial_triangulation(task, job)? {
+    let chart_surface = task.interpolated.unwrap_or(task.chart_surface);
+    let triangulation = match initial_triangulation(&Task { chart_surface, ..*task }, job)? {
         Ok(triangulation) => triangulation,
         Err(reason) => return Ok(Err(reason)),
     };
-    let mut optimizer = MeshOptimizer::new(triangulation, task.chart_surface, task.field, task.settings);
+    let mut optimizer = MeshOptimizer::new(triangulation, chart_surface, task.field, task.settings);
     optimizer.settle();
     job.go_on()?;
     // Where lengths were wrong, the face is not optimized before better ones are known.
@@ -68,6 +75,9 @@ pub fn triangulate(task: &Task, job: &Job) -> Outcome<Triangulated> {
     if optimizer.are_few(&bad) {
         if bad.len() * REPAIR.few_over_limit <= optimizer.triangulation.tri.len() {
             optimizer.improve(job)?;
+        }
+        if task.interpolated.is_some() && optimizer.move_onto(task.chart_surface) > MAX_MOVE {
+            return triangulate(&Task { interpolated: None, ..*task }, job);
         }
         if let Some(limit_check) = task.limit_check {
             bad = optimizer.divide(limit_check, bad, job)?;

@@ -59,6 +59,7 @@ impl FaceFit<'_> {
     fn expected<const N: usize>(&self, fields: [&dyn SizeField; N]) -> [f64; N] {
         let lattice = NodePlacement::Triangles;
         let task = |field| Task {
+            interpolated: None,
             chart_surface: self.chart,
             field,
             outline: self.outline,

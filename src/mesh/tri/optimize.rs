@@ -117,6 +117,19 @@ impl<'a> MeshOptimizer<'a> {
         self.triangulation
     }
 
+    /// Puts the nodes on another surface, at their places in the chart; the largest move over the wanted length there.
+    pub fn move_onto(&mut self, chart_surface: &'a dyn ParametricSurface) -> f64 {
+        self.chart_surface = chart_surface;
+        self.unseen = Pending::all(self.triangulation.p.len());
+        let mut largest = 0.0_f64;
+        for n in self.triangulation.fixed as usize..self.triangulation.p.len() {
+            let p = chart_surface.point(self.triangulation.xy[n]);
+            largest = largest.max(p.distance(self.triangulation.p[n]) / self.triangulation.size[n]);
+            self.triangulation.p[n] = p;
+        }
+        largest
+    }
+
     /// The first flips and rounds of smoothing: from here on nodes hardly move.
     pub fn settle(&mut self) {
         self.flip_all();

@@ -11,8 +11,9 @@ use crate::base::job::Job;
 use crate::mesh::border::layout::Face;
 use crate::mesh::chart::affine::Chart;
 use crate::mesh::chart::face_input::{FaceInput, outlined};
+use crate::mesh::chart::interpolated::InterpolatedChart;
 use crate::mesh::chart::outline::Outline;
-use crate::mesh::chart::parametric_surface::{SizeField, UniformSize};
+use crate::mesh::chart::parametric_surface::{ParametricSurface, SizeField, UniformSize};
 use crate::mesh::deviation::edge_length::{self, EdgePlace};
 use crate::mesh::deviation::poles;
 use crate::mesh::request::decider::{Decider, Tally, Why};
@@ -46,6 +47,8 @@ pub(crate) struct FaceFit<'a> {
     pub(crate) limits: Limits,
     pub(crate) longest: Longest<'a>,
     pub(crate) settings: OptimizeSettings,
+    /// The chart interpolated, where that is quicker and no limit is bounded on it.
+    pub(crate) interpolated: Option<InterpolatedChart<'a>>,
 }
 
 /// The triangles of a face that keep its limits.
@@ -76,7 +79,7 @@ pub(crate) fn fitted(face_input: &FaceInput, face: &Face, chart: &Chart, outline
     });
     let rules = near(face_input, face, outline);
     let longest = Longest::new(face.size.0, outline, &rules).graded(outline, face_input.input.plan.slope());
-    let mut fit = FaceFit { face_input, face, surface, chart, outline, limits, longest, settings };
+    let mut fit = FaceFit { face_input, face, surface, chart, outline, limits, longest, settings, interpolated: None };
     if face.method.is_coarse() {
         let mut outcome = fit.between_isolines(&rules, job)?;
         match (face.method, &mut outcome) {
@@ -98,6 +101,9 @@ pub(crate) fn fitted(face_input: &FaceInput, face: &Face, chart: &Chart, outline
     }
     let mut field = GradedSize { sources: &sources, range: (face.size.0, face_input.wanted.written), spacing: SPACING, background };
     fit.refuse_large(&field)?;
+    if !bent {
+        fit.interpolated = InterpolatedChart::new(chart, outline, face.size.0);
+    }
     let triangulation = if bent { fit.bent(&mut field, job)? } else { fit.even(&mut field, job)? };
     if matches!(triangulation, Err(NoMesh::TooManyNodes)) {
         return Err(fit.too_large(&field, None));
@@ -124,6 +130,7 @@ pub(crate) fn elements_ahead(face_input: &FaceInput, face: &Face) -> Option<[f64
     let even = UniformSize(spacing * face.size.0);
     let fields: [&dyn SizeField; 2] = [if sources.is_empty() { &even } else { &field }, &even];
     let task = |field| Task {
+        interpolated: None,
         chart_surface: &chart,
         field,
         outline: &outline,
@@ -235,6 +242,7 @@ impl FaceFit<'_> {
         let lattice = if self.face.method == Method::Quadtree { NodePlacement::Tree } else { NodePlacement::Triangles };
         Task {
             chart_surface: self.chart,
+            interpolated: self.interpolated.as_ref().map(|chart| chart as &dyn ParametricSurface),
             field,
             outline: self.outline,
             settings: self.settings,

@@ -197,8 +197,10 @@ fn divided(knots: &[f64]) -> Vec<f64> {
 
 impl NurbsSurface {
     /// Bounds of the third derivatives over a rectangle inside one span: hulls of differences, and the quotient rule
-    /// about the first point; apart along the normal in the middle, where a change of parameters adds nothing.
+    /// about the first point; apart along the normal in the middle, where a change of parameters adds nothing. Without a normal
+    /// there any direction takes its part.
     fn third(&self, u: &NetStrip, v: &NetStrip, normal: DVec3) -> ThirdDerivatives {
+        let normal = if normal.is_normalized() { normal } else { DVec3::Z };
         let (n, rows) = (self.degree.0 + 1, self.degree.1 + 1);
         let mut net = vec![DVec4::ZERO; n * rows];
         self.piece_into(u, v, &mut net);
@@ -273,6 +275,18 @@ mod tests {
             weighted(place + off, 1.0 + variation * noise(seed + 7 * k + 1000))
         };
         NurbsSurface { degree: (6, 5), knots, poles: (0..48).map(pole).collect(), counts: (8, 6) }
+    }
+
+    #[test]
+    fn boxes_without_a_normal_count() {
+        let net = net(5, 1.0);
+        let bounds_with = |normal: DVec3| {
+            let thirds = ThirdDerivativeBounds::new(&net, (&[0.0, 0.4, 1.0], &[0.0, 1.0]), &|_, _| normal);
+            thirds.bounds_along((DVec2::splat(0.1), DVec2::splat(0.2)), DVec3::Z)
+        };
+        assert!(bounds_with(DVec3::Z)[0] > 0.0);
+        assert_eq!(bounds_with(DVec3::ZERO), bounds_with(DVec3::Z));
+        assert_eq!(bounds_with(DVec3::NAN), bounds_with(DVec3::Z));
     }
 
     #[test]
