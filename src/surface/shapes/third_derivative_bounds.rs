@@ -4,6 +4,7 @@
 //! runs at uneven speed, turns through a good part of a circle or has uneven weights. A span is one box at first; the box over
 //! which third derivatives let second ones vary most, for its bend, is halved until they matter little everywhere.
 
+use std::rc::Rc;
 use std::sync::OnceLock;
 
 use glam::{DVec2, DVec3, DVec4};
@@ -36,7 +37,7 @@ struct BoxSettings {
 }
 
 const SETTINGS: BoxSettings = BoxSettings {
-    max_share: 0.25,
+    max_share: 1.0,
     counted_curvature: 0.5,
     max_lean: 0.1,
     turns: 8.0,
@@ -182,7 +183,11 @@ struct OpenBox {
     slack: [[f64; 2]; 2],
     /// Width in space.
     width: f64,
+    strips: Strips,
 }
+
+/// The strips of both directions of a box: halves have one in common.
+type Strips = [Rc<NetStrip>; 2];
 
 /// The boxes of a span while they are made.
 struct SpanBoxes<'a, J> {
@@ -200,16 +205,20 @@ impl<'a, J: Fn(DVec2) -> Jet2> SpanBoxes<'a, J> {
     /// Halves boxes, the worst one first, until all are small enough.
     fn new(net: &'a NurbsSurface, jet: &'a J, whole: Area, spans: usize) -> Self {
         let mut boxes = Self { net, jet, nodes: Vec::new(), open: Vec::new(), curvature: 0.0, lean: 0.0 };
-        boxes.push(whole, [0; 2]);
+        boxes.push(whole, [0; 2], [0, 1].map(|axis| boxes.strip(whole, axis)));
         let first = &boxes.open[0];
         boxes.lean = (SETTINGS.turns * (first.sag + first.slack[0][0] + first.slack[0][1]) / first.width).min(SETTINGS.max_lean);
         let most = (SETTINGS.max_halved / spans).max(SETTINGS.min_halved_of_span);
         for _ in 0..most {
             let Some((k, axis)) = boxes.worst() else { break };
-            let OpenBox { node, area, mut depth, .. } = boxes.open.swap_remove(k);
+            let OpenBox { node, area, mut depth, strips, .. } = boxes.open.swap_remove(k);
             depth[axis] += 1;
             boxes.nodes[node].halves = Some((axis, boxes.nodes.len() as u32));
-            halves(area, axis).into_iter().for_each(|part| boxes.push(part, depth));
+            for part in halves(area, axis) {
+                let mut strips = strips.clone();
+                strips[axis] = boxes.strip(part, axis);
+                boxes.push(part, depth, strips);
+            }
         }
         boxes
     }
@@ -231,12 +240,16 @@ impl<'a, J: Fn(DVec2) -> Jet2> SpanBoxes<'a, J> {
         worst.map(|(_, k, axis)| (k, axis))
     }
 
-    fn push(&mut self, area: Area, depth: [u8; 2]) {
+    fn strip(&self, (low, high): Area, axis: usize) -> Rc<NetStrip> {
+        Rc::new(self.net.strip(axis == 0, (low[axis], high[axis])))
+    }
+
+    fn push(&mut self, area: Area, depth: [u8; 2], strips: Strips) {
         let (low, high) = area;
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
         let jet = (self.jet)(middle);
         let normal = jet.du.cross(jet.dv).normalize_or_zero();
-        let third = self.net.third(&self.net.strip(true, (low.x, high.x)), &self.net.strip(false, (low.y, high.y)), normal);
+        let third = self.net.third(&strips[0], &strips[1], normal);
         let slack = [third.along_normal, third.any_direction].map(|third| {
             let [a, b, c, d] = terms(third, half);
             [a + 2.0 * b + c, b + 2.0 * c + d]
@@ -248,7 +261,7 @@ impl<'a, J: Fn(DVec2) -> Jet2> SpanBoxes<'a, J> {
         if width > 0.0 {
             self.curvature = self.curvature.max(sag / (width * width));
         }
-        self.open.push(OpenBox { node: self.nodes.len(), area, depth, sag, slack, width });
+        self.open.push(OpenBox { node: self.nodes.len(), area, depth, sag, slack, width, strips });
         self.nodes.push(Node { third, second, halves: None });
     }
 }
