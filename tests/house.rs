@@ -97,7 +97,7 @@ const CEILINGS: &[(&str, usize)] = &[
     ("base", 4_650),
     ("geometry", 6_100),
     ("network", 5_150),
-    ("surface", 28_200),
+    ("surface", 28_300),
     ("model", 6_900),
     ("mesh", 31_200),
     ("io", 17_200),

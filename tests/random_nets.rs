@@ -98,8 +98,18 @@ fn net(seed: usize, settings: &str) -> Model {
 /// For each net: the most triangles over OpenCASCADE's that count, under a chord error alone and for `method: display`. Half of its triangles is the
 /// aim, and 0.35 for display; at limits as coarse as these the steps that holes need for themselves, from which lengths grow slowly, decide in nets of
 /// eight to twelve holes.
-const SHARES: [(f64, f64); 10] =
-    [(1.03, 0.58), (0.84, 0.35), (1.28, 0.52), (0.97, 0.36), (0.5, 0.2), (0.35, 0.2), (0.35, 0.2), (0.84, 0.3), (1.32, 0.55), (0.72, 0.25)];
+const SHARES: [(f64, f64); 10] = [
+    (0.64, 0.26),
+    (0.76, 0.24),
+    (1.27, 0.5),
+    (0.92, 0.31),
+    (0.46, 0.1),
+    (0.3, 0.11),
+    (0.3, 0.08),
+    (0.81, 0.27),
+    (1.28, 0.53),
+    (0.69, 0.19),
+];
 
 #[test]
 fn random_nets_keep_the_limit_with_few_triangles() {
@@ -111,7 +121,7 @@ fn random_nets_keep_the_limit_with_few_triangles() {
         assert!(found.error <= limit, "{seed}: off by {} of {limit}", found.error);
         assert!(share <= most, "{seed}: {share} of the triangles");
         // The aims are 0.96 and 28°.
-        assert!(found.quality >= 0.89 && found.angle >= 25.0, "{seed}: quality {}, {}°", found.quality, found.angle);
+        assert!(found.quality >= 0.895 && found.angle >= 26.0, "{seed}: quality {}, {}°", found.quality, found.angle);
     }
 }
 

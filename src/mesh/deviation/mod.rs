@@ -6,6 +6,7 @@ pub mod certify;
 pub mod curve;
 pub mod edge_length;
 pub mod flat_triangle;
+mod heights;
 pub mod measure;
 mod measure_grid;
 pub mod poles;

@@ -10,6 +10,7 @@ use glam::{DVec2, DVec3};
 use crate::base::range::Interval3;
 use crate::base::tolerance::NUDGE;
 use crate::mesh::deviation::bend_bounds::{bends_over, beside_kinks};
+use crate::mesh::deviation::heights::{Heights, Plane};
 use crate::mesh::deviation::poles;
 use crate::mesh::deviation::quadratic::{over_corners, over_sides};
 use crate::surface::core::power_form::Bends;
@@ -19,22 +20,22 @@ use crate::surface::{Evaluator, Surface};
 struct TriangleSettings {
     /// Share of the box of a triangle by which it is widened: feet of its points lie a little beside their (u, v).
     widening: f64,
-    /// How often a triangle is quartered where the bound over the whole of it is not enough.
-    max_quarterings: u32,
-    /// A bound that is larger than this times the distance wanted is not refined by parts.
+    /// How often a triangle is cut into [`Heights::PARTS`]² parts where the bound over the whole of it is not enough.
+    max_divisions: u32,
+    /// A bound that is larger than this times the distance wanted is not refined by parts, where derivatives cost hundreds of evaluations.
     max_excess: f64,
     /// Width in (u, v) from which a triangle goes round a tip.
     min_width_round_tip: f64,
 }
 
-const SETTINGS: TriangleSettings = TriangleSettings { widening: 0.05, max_quarterings: 3, max_excess: 8.0, min_width_round_tip: 0.03 };
+const SETTINGS: TriangleSettings = TriangleSettings { widening: 0.05, max_divisions: 2, max_excess: 8.0, min_width_round_tip: 0.03 };
 
 /// Largest distance of a triangle from the surface, by the places and points of its corners; infinite where the surface
 /// has no bounded second derivative.
 ///
 /// Of a triangle with a corner at a pole a `second` one in (u, v) belongs to it, with two corners there ([`poles::under`]): each is
-/// bounded. A bound above `wanted` is found by parts, with the heights at their corners: of a part half as wide what is not known of the
-/// bend weighs an eighth. Nearly what there is, for some five times the work.
+/// bounded. A bound above `wanted` is found by parts, with the heights at their corners: what is not known of the bend of the whole weighs a
+/// sixteenth over parts a quarter as wide. Where that is not enough for a part, its own bend is found.
 pub fn chord(evaluator: Evaluator, uv: [DVec2; 3], second: Option<[DVec2; 3]>, p: [DVec3; 3], wanted: f64) -> f64 {
     let normal = (p[1] - p[0]).cross(p[2] - p[0]).normalize_or_zero();
     if normal == DVec3::ZERO {
@@ -63,45 +64,39 @@ fn goes_round_tip(evaluator: Evaluator, uv: [DVec2; 3]) -> bool {
         && at.into_iter().any(|at| poles::tip(evaluator.surface(), &tangents, at).is_some())
 }
 
-/// The most that the surface over a triangle of (u, v) is off the plane of its corners, through `on` with a unit normal.
+/// The most that the surface over a triangle of (u, v) is off the plane of its corners, through `on` with a unit normal. The search ends with
+/// the first height above `wanted`.
 fn above_plane(evaluator: Evaluator, uv: [DVec2; 3], on: DVec3, normal: DVec3, wanted: f64) -> f64 {
-    let first = part(evaluator, uv, normal, None);
-    if first <= wanted || first > SETTINGS.max_excess * wanted {
+    let plane = Plane { on, normal };
+    let bends = bends_of(evaluator, uv, normal);
+    let first = bends.map_or(f64::INFINITY, |bends| over_sides(&bends, uv, width(uv)));
+    let costly = !evaluator.has_power_form();
+    if first <= wanted || costly && first > SETTINGS.max_excess * wanted {
         return first;
     }
-    let height = |uv: DVec2| {
-        let at = evaluator.point(uv.x, uv.y);
-        (at - on).dot(normal)
-    };
-    let quarter = |uv: [DVec2; 3], above: [f64; 3]| {
-        let middle = |i: usize, j: usize| 0.5 * (uv[i] + uv[j]);
-        let m = [middle(1, 2), middle(2, 0), middle(0, 1)];
-        let f = m.map(height);
-        let corner = |k: usize| {
-            let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-            ([uv[k], m[j], m[i]], [above[k], f[j], f[i]])
+    let mut worst = 0.0_f64;
+    let mut open = vec![(uv, [0.0_f64; 3], bends, SETTINGS.max_divisions)];
+    while let Some((uv, above, bends, left)) = open.pop() {
+        let heights = match Heights::of(evaluator, uv, above, plane, wanted) {
+            Ok(heights) => heights,
+            Err(seen) => return seen,
         };
-        let seen = f.into_iter().fold(0.0, |seen: f64, f| seen.max(f.abs()));
-        ([(m, f), corner(0), corner(1), corner(2)], seen)
-    };
-    let (mut worst, mut open) = (0.0_f64, Vec::with_capacity(4 * SETTINGS.max_quarterings as usize));
-    let mut next = Some((uv, [0.0_f64; 3], SETTINGS.max_quarterings));
-    while let Some((uv, above, left)) = next {
-        let (parts, seen) = quarter(uv, above);
-        if seen > wanted {
-            return seen;
-        }
-        for (uv, above) in parts {
-            let bound = part(evaluator, uv, normal, Some(above));
-            if bound > wanted && left > 1 {
-                open.push((uv, above, left - 1));
-            } else if bound > wanted {
-                return bound;
-            } else {
+        for (small, above) in heights.parts(uv) {
+            let shared = bends.map_or(f64::INFINITY, |bends| over_corners(above, &bends, small, width(small)));
+            if shared <= wanted {
+                worst = worst.max(shared);
+                continue;
+            }
+            let own = if left > 0 { bends_of(evaluator, small, normal) } else { None };
+            let bound = own.map_or(shared, |own| over_corners(above, &own, small, width(small)).min(shared));
+            if bound <= wanted {
                 worst = worst.max(bound);
+            } else if left > 1 {
+                open.push((small, above, own, left - 1));
+            } else {
+                return bound;
             }
         }
-        next = open.pop();
     }
     worst
 }
@@ -124,14 +119,16 @@ pub fn in_any_direction(surface: &Surface, uv: [DVec2; 3]) -> f64 {
     over_sides(&Bends { mid: [0.0; 3], slack: all.map(|r| r.reach()), jump: 0.0 }, uv, high - low)
 }
 
-/// How far the surface over a triangle of (u, v) is from a plane along its normal, by the heights of the corners where they
-/// are not in the plane.
-fn part(evaluator: Evaluator, uv: [DVec2; 3], normal: DVec3, above: Option<[f64; 3]>) -> f64 {
+/// The width of the box of a triangle.
+fn width(uv: [DVec2; 3]) -> DVec2 {
+    uv[0].max(uv[1]).max(uv[2]) - uv[0].min(uv[1]).min(uv[2])
+}
+
+/// Second derivatives along a unit vector over the box of a triangle and a little more; `None` where they are not bounded.
+fn bends_of(evaluator: Evaluator, uv: [DVec2; 3], normal: DVec3) -> Option<Bends> {
     let (low, high) = (uv[0].min(uv[1]).min(uv[2]), uv[0].max(uv[1]).max(uv[2]));
-    let width = high - low;
-    let whole = beside_kinks(evaluator.surface(), (low, high), (low - width * SETTINGS.widening, high + width * SETTINGS.widening));
-    bends_over(evaluator, whole, normal)
-        .map_or(f64::INFINITY, |bends| above.map_or_else(|| over_sides(&bends, uv, width), |above| over_corners(above, &bends, uv, width)))
+    let more = (high - low) * SETTINGS.widening;
+    bends_over(evaluator, beside_kinks(evaluator.surface(), (low, high), (low - more, high + more)), normal)
 }
 
 /// How far the surface is from a triangle in the middles of its sides and in its own.

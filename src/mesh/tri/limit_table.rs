@@ -119,6 +119,11 @@ pub fn ratio_of_upright(chart: &Chart, triangulation: &Triangulation, corners: [
 
 fn ratio_of_tilted(chart: &Chart, triangulation: &Triangulation, corners: [u32; 3], limits: &Limits, cosine: f64) -> LimitRatios {
     let triangle = ChartTriangle::of(triangulation, corners);
+    // Most triangles that are tried are far too large: some points tell.
+    let seen = limits.chord.map_or(0.0, |limit| sampled_chord(chart, triangle) / limit);
+    if seen > 1.0 {
+        return LimitRatios { chord: seen / cosine.max(MIN_TILT_COSINE), angle: 0.0 };
+    }
     let gap = border_gap(chart, triangulation, corners.map(|n| n as usize), limits);
     let ratio = tilted(chart, triangle, gap, of_places(chart, triangle, gap, limits), cosine, limits);
     let fixed = corners.iter().any(|n| *n < triangulation.fixed);
@@ -266,14 +271,16 @@ fn turn_ratio(chart: &Chart, xy: [DVec2; 3], places: [DVec2; 3], limits: &Limits
 /// The worse ratio of three places with their points, the chord error by samples: within some hundredths of the bound, for a
 /// twentieth of the work.
 pub fn sampled_ratio(chart: &Chart, triangle: ChartTriangle, limits: &Limits) -> f64 {
-    let ChartTriangle { xy, p } = triangle;
-    let places = xy.map(|xy| DVec2::from(chart.uv(xy)));
-    let chord = limits.chord.map_or(0.0, |limit| {
-        let (first, second) = under(&|at| chart.tangents(at.into()), places);
-        let off = |uv| triangle::sampled(&|uv: DVec2| chart.evaluator().point(uv.x, uv.y), uv, p);
-        off(first).max(second.map_or(0.0, off)) / limit
-    });
-    chord.max(turn_ratio(chart, xy, places, limits))
+    let places = triangle.xy.map(|xy| DVec2::from(chart.uv(xy)));
+    let chord = limits.chord.map_or(0.0, |limit| sampled_chord(chart, triangle) / limit);
+    chord.max(turn_ratio(chart, triangle.xy, places, limits))
+}
+
+/// How far the surface is from the plane of three places with their points, by samples.
+fn sampled_chord(chart: &Chart, ChartTriangle { xy, p }: ChartTriangle) -> f64 {
+    let (first, second) = under(&|at| chart.tangents(at.into()), xy.map(|xy| DVec2::from(chart.uv(xy))));
+    let off = |uv| triangle::sampled(&|uv: DVec2| chart.evaluator().point(uv.x, uv.y), uv, p);
+    off(first).max(second.map_or(0.0, off))
 }
 
 /// How far a border node is from the surface: glued edges run beside it.

@@ -16,7 +16,7 @@ use crate::surface::data::jet::Jet2;
 use crate::surface::data::one_sided::OneSided;
 use crate::surface::shapes::nurbs::quotient;
 use crate::surface::shapes::powers::Powers;
-use crate::surface::shapes::third_derivative_bounds::ThirdDerivativeBounds;
+use crate::surface::shapes::third_derivative_bounds::DerivativesAlong;
 
 /// Highest degree in powers: about the middle of a span they lose a factor of 2 a degree, here 4e-12 of the size.
 const HIGHEST: usize = 14;
@@ -72,19 +72,12 @@ impl Surface {
 }
 
 impl PowerForm {
-    /// Bounds of the third derivatives along a unit vector over a box of the net's own parameters: ∂uuu, ∂uuv, ∂uvv, ∂vvv.
-    fn most_thirds(&self, area: (DVec2, DVec2), along: DVec3) -> [f64; 4] {
-        let made = || {
-            let Shape::Nurbs(net) = &self.surface.parts().shape else { return None };
-            let normal = |u: f64, v: f64| {
-                let jet = self.own_jet(u, v);
-                jet.du.cross(jet.dv).normalize_or_zero()
-            };
-            Some(ThirdDerivativeBounds::new(net, (&self.net.stops.0.at, &self.net.stops.1.at), &normal))
-        };
-        // Made once for everyone, whoever comes first.
-        let thirds = self.net.thirds.get_or_init(|| work::uncharged(made));
-        thirds.as_ref().map_or([f64::INFINITY; 4], |thirds| thirds.bounds_along(area, along))
+    /// Derivatives along a unit vector over a box of the net's own parameters.
+    fn derivatives(&self, area: (DVec2, DVec2), along: DVec3) -> DerivativesAlong {
+        match &self.surface.parts().shape {
+            Shape::Nurbs(net) => self.net.thirds.along(net, &|at: DVec2| self.own_jet(at.x, at.y), area, along),
+            _ => DerivativesAlong::UNBOUNDED,
+        }
     }
 
     /// The point alone.
@@ -215,7 +208,7 @@ impl PowerForm {
             };
             let (before, after) = (beside(c - BEFORE_KNOT), beside(c));
             let ends = [place(c - BEFORE_KNOT, from), place(c + BEFORE_KNOT, to)].map(|(u, v)| DVec2::new(u, v));
-            let third = self.most_thirds((ends[0], ends[1]), along)[if in_u { 2 } else { 1 }];
+            let third = self.derivatives((ends[0], ends[1]), along).third[if in_u { 2 } else { 1 }];
             let jump = (after.0 - before.0).dot(along).abs() + half * (after.1 - before.1).dot(along).abs() + half * half * third;
             most = most.max(jump);
             from = to;
@@ -226,10 +219,17 @@ impl PowerForm {
     /// The same over a box of the net's own parameters in which second derivatives do not jump.
     fn smooth(&self, (low, high): (DVec2, DVec2), along: DVec3) -> Bends {
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
-        let most = self.most_thirds((low, high), along);
-        let jet = self.surface.outer(self.own_jet(middle.x, middle.y));
-        let slack = [0, 1, 2].map(|k| most[k] * half.x + most[k + 1] * half.y);
-        Bends { mid: [jet.duu, jet.duv, jet.dvv].map(|d| d.dot(along)), slack, jump: 0.0 }
+        let DerivativesAlong { third, low, high } = self.derivatives((low, high), along);
+        let jet = self.own_jet(middle.x, middle.y);
+        let range = |k: usize, at: DVec3| {
+            let (at, slack) = (at.dot(along), third[k] * half.x + third[k + 1] * half.y);
+            let (low, high) = (low[k].max(at - slack), high[k].min(at + slack));
+            // Middle and half width, to be turned as derivatives are.
+            DVec3::new(0.5 * (low + high), 0.5 * (high - low), 0.0)
+        };
+        let turned = self.surface.outer(Jet2 { duu: range(0, jet.duu), duv: range(1, jet.duv), dvv: range(2, jet.dvv), ..Jet2::default() });
+        let ranges = [turned.duu, turned.duv, turned.dvv];
+        Bends { mid: ranges.map(|r| r.x), slack: ranges.map(|r| r.y.abs()), jump: 0.0 }
     }
 
     fn span(&self, i: usize, j: usize) -> &[DVec4] {

@@ -1,6 +1,6 @@
 //! A net in powers, one polynomial a span.
 
-use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
+use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 use glam::DVec4;
 
@@ -18,8 +18,7 @@ pub(crate) struct Powers {
     pub(crate) stops: (Stops, Stops),
     /// Coefficients of each span (u fastest): those of s^i t^j with i fastest.
     pub(crate) powers: Vec<DVec4>,
-    /// Found when they are asked for; of a net there always are some.
-    pub(crate) thirds: OnceLock<Option<ThirdDerivativeBounds>>,
+    pub(crate) thirds: ThirdDerivativeBounds,
     /// Knots at which second derivatives may jump.
     pub(crate) rough: (Vec<f64>, Vec<f64>),
     /// Those of them at which first derivatives jump.
@@ -88,7 +87,7 @@ impl Powers {
         Self {
             degree: net.degree,
             powers: powers.collect(),
-            thirds: OnceLock::new(),
+            thirds: ThirdDerivativeBounds::new(stops.clone()),
             corners: (corners(true, &rough.0), corners(false, &rough.1)),
             rough,
             stops: (Stops::new(stops.0, net.degree.0), Stops::new(stops.1, net.degree.1)),
