@@ -122,6 +122,8 @@ pub const FLAT_CORNER: f64 = 1e-3;
 pub const DAMPED_BENDS: f64 = 1e-4;
 /// Damping of its first ones.
 pub const DAMPED_SLOPES: f64 = 1e-12;
+/// Deviation of a surface over the width of a box that counts as none.
+pub const FLAT_BOX: f64 = 1e-9;
 /// Nearest points are the nearest ones to this share of their distance.
 pub const NEAREST: f64 = 1e-9;
 

@@ -17,6 +17,7 @@ use crate::mesh::chart::face_input::{FaceInput, outlined};
 use crate::mesh::chart::outline::{Outline, inside};
 use crate::mesh::request::methods::Elements;
 use crate::mesh::request::sources::distance_to_segment;
+use crate::mesh::size::border_spacing::SPACING;
 use crate::mesh::size::face_settings::is_plane_lattice;
 use crate::model::glue::{join, root};
 
@@ -35,13 +36,20 @@ pub struct Narrow {
 
 /// What steers the search for narrow places.
 struct ProximitySettings {
-    /// Longest step over the distance to the border that faces it: the triangle with a right angle at its end has 27°.
+    /// Longest step over the distance to the border that faces it on plane faces: the triangle with a right angle at its end has 45°, and 41°
+    /// where the slack makes the step longer.
     max_step_over_gap: f64,
+    /// The same on bent faces, and of narrow places whose distance is less than the least step of a gap: the triangle has 27°.
+    max_step_over_gap_of_place: f64,
+    /// The same where one row of triangles is too flat for the gap, and two are needed.
+    max_step_over_gap_of_two_rows: f64,
+    /// Gap from which on that is so, over the length that steps have where nothing faces them.
+    max_gap_of_one_row: f64,
     /// The same for quads, whose cells have sides of two steps.
     max_step_over_gap_quads: f64,
     /// The same for quads of a plane lattice where the gap takes two rows: with more, cells of a web have nodes that face each other half a
     /// step apart.
-    max_step_over_gap_of_two_rows: f64,
+    max_step_over_gap_of_two_rows_of_quads: f64,
     /// Longest step of quads of a plane lattice where the gap takes one row, over the size.
     max_step_of_one_row: f64,
     /// The least step that facing borders demand, over the size, where no `min_size` is written: a long gap is not filled with
@@ -67,9 +75,12 @@ struct ProximitySettings {
 }
 
 const SETTINGS: ProximitySettings = ProximitySettings {
-    max_step_over_gap: 2.0,
+    max_step_over_gap: 1.0,
+    max_step_over_gap_of_place: 2.0,
+    max_step_over_gap_of_two_rows: 0.75,
+    max_gap_of_one_row: 1.15,
     max_step_over_gap_quads: 1.0,
-    max_step_over_gap_of_two_rows: 0.55,
+    max_step_over_gap_of_two_rows_of_quads: 0.55,
     max_step_of_one_row: 0.25,
     min_step_over_size: 1.0 / 16.0,
     max_steps_of_place: 24,
@@ -196,16 +207,22 @@ impl ProximityScan<'_> {
         Some(Narrow { segment: step.segment, f: 0.5 * (step.f.0 + step.f.1), size: SETTINGS.half * length, crossing: true })
     }
 
-    /// The longest step of a border that another one faces at a distance, model units.
-    fn longest_step(&self, gap: f64) -> f64 {
-        if self.face.elements == Elements::Triangles {
-            return SETTINGS.max_step_over_gap * gap;
+    /// The longest step of a border that another one faces at a distance, model units; `floor` is the least one that facing borders demand.
+    fn longest_step(&self, gap: f64, floor: f64) -> f64 {
+        let size = self.face.size.0;
+        if is_plane_lattice(self.context.input, self.face) {
+            let of_one_row = (SETTINGS.max_step_over_gap_quads * gap).min(SETTINGS.max_step_of_one_row * size);
+            return of_one_row.max(SETTINGS.max_step_over_gap_of_two_rows_of_quads * gap);
         }
-        let of_one_row = SETTINGS.max_step_over_gap_quads * gap;
-        if !is_plane_lattice(self.context.input, self.face) {
-            return of_one_row;
+        if self.face.elements != Elements::Triangles {
+            return SETTINGS.max_step_over_gap_quads * gap;
         }
-        of_one_row.min(SETTINGS.max_step_of_one_row * self.face.size.0).max(SETTINGS.max_step_over_gap_of_two_rows * gap)
+        if gap < floor || !self.context.input.model.surfaces[self.face.surface.index()].surface.is_flat() {
+            return SETTINGS.max_step_over_gap_of_place * gap;
+        }
+        let (whole, of_two_rows) = (SPACING * size, SETTINGS.max_step_over_gap_of_two_rows * gap);
+        let is_wide = gap > SETTINGS.max_gap_of_one_row * whole && of_two_rows < whole;
+        if is_wide { of_two_rows } else { SETTINGS.max_step_over_gap * gap }
     }
 
     /// Steps that are long for what stands over them.
@@ -227,7 +244,7 @@ impl ProximityScan<'_> {
                 let (over, edge) = (c[k], [c[(k + 1) % 3], c[(k + 2) % 3]]);
                 let [a, b] = edge.map(|n| p[n as usize]);
                 let gap = distance_to_segment(p[over as usize], a, b);
-                if gap > 0.0 && self.outline.length(edge) > SETTINGS.slack * self.longest_step(gap).max(deepest) {
+                if gap > 0.0 && self.outline.length(edge) > SETTINGS.slack * self.longest_step(gap, floor).max(deepest) {
                     close.push((over, edge, gap));
                 }
             }
@@ -264,11 +281,11 @@ impl ProximityScan<'_> {
         }
         let mut found = Vec::new();
         // Each step is seen from both sides of the gap.
-        let deep = narrow.iter().filter(|n| self.longest_step(n.3) < floor).count() <= 2 * SETTINGS.max_steps_of_place;
+        let deep = narrow.iter().filter(|n| self.longest_step(n.3, floor) < floor).count() <= 2 * SETTINGS.max_steps_of_place;
         for (over, [a, b], t, gap) in narrow {
             let length = self.outline.length([a, b]);
             let least = if deep { deepest.max(floor.min(SETTINGS.shrink_of_place * length)) } else { floor };
-            let size = self.longest_step(gap).max(least);
+            let size = self.longest_step(gap, floor).max(least);
             let mut shorten = |edge: [u32; 2], t: f64| {
                 if self.outline.length(edge) > SETTINGS.slack * size
                     && let Some(step) = self.step(edge)

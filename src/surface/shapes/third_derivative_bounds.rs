@@ -9,6 +9,7 @@ use std::sync::OnceLock;
 
 use glam::{DVec2, DVec3, DVec4};
 
+use crate::base::tolerance::FLAT_BOX;
 use crate::base::work;
 use crate::geometry::shapes::bounds::binomial;
 use crate::geometry::shapes::nurbs::projected;
@@ -41,7 +42,7 @@ const SETTINGS: BoxSettings = BoxSettings {
     counted_curvature: 0.5,
     max_lean: 0.1,
     turns: 8.0,
-    min_sag: 1e-9,
+    min_sag: FLAT_BOX,
     max_depth: 8,
     max_halved: 2048,
     min_halved_of_span: 64,
