@@ -69,7 +69,7 @@ fn random_plates_keep_their_floors() {
     assert_eq!(all.len(), 10);
     let told: String = all.iter().map(|f| format!("{}: {:.2}° {:.4} {:.4}\n", f.name, f.angle, f.worst, f.mean)).collect();
     // Wanted are 37.5° in all and 41° in nine, a worst quality of 0.85 and a mean of 0.996; these are the figures reached.
-    let least = [("least angle", 23.0, 33.0), ("worst quality", 0.62, 0.73), ("mean quality", 0.974, 0.975)];
+    let least = [("least angle", 33.0, 33.3), ("worst quality", 0.76, 0.77), ("mean quality", 0.974, 0.975)];
     for (figure, in_all, in_nine) in least {
         let mut values: Vec<f64> = all
             .iter()

@@ -1,4 +1,5 @@
 """usage: random_nets.py LOFT [--cases N] [--first SEED] [--display] [--limits 0,1,2] [--occt] [--truth FILE] [--write FOLDER]
+       [--draw FILE]
 
 Meshes random trimmed nets (nets.py) within three chord errors each, at which OpenCASCADE makes about 2 000, 15 000 and 120 000 triangles,
 and prints one line a mesh and a table of least, 10 %, median and largest value of every figure. The distance from the surface is
@@ -6,7 +7,7 @@ measured at 25 places of each triangle, by Gauss-Newton from their (u, v); `over
 Angles are those of triangles without a corner of the net. With --occt the same faces are meshed by OpenCASCADE's incremental mesher
 beside; with --truth its figures are kept in a file and taken from there the next time. --write writes ten small nets with the
 counts of OpenCASCADE, for `tests/random_nets.rs`. Times are CPU seconds of one thread: ours of the stage, theirs of the mesher
-alone. Needs `pip install cadquery-ocp numpy scipy`."""
+alone. --draw draws the places of the worst triangles of the five worst meshes. Needs `pip install cadquery-ocp matplotlib numpy scipy`."""
 import argparse
 import json
 import pathlib
@@ -20,6 +21,7 @@ from nets import Net
 from quality import Cpu, triangles
 from random_plates import read_obj, table
 from scipy.spatial import cKDTree
+from worst import Worst
 
 # Places of a triangle at which its distance is measured: those of a grid of six parts along its sides, without the corners.
 PARTS = 6
@@ -73,12 +75,16 @@ def chord_error(surface, points, uv, corners):
     return float(worst)
 
 
+def at_corner(net, points):
+    """Which points are corners of the net."""
+    ends = net.surface.evaluate(np.array([0.0, 0, 1, 1]), np.array([0.0, 1, 0, 1]))[0]
+    return (np.linalg.norm(points[:, None] - ends, axis=2) < 1e-6).any(1)
+
+
 def measured(net, points, corners, limit, uv=None, most=None):
     """Figures of a mesh; of more than `most` triangles the distance is that of some at random."""
     found = triangles(points, corners)
-    ends = net.surface.evaluate(np.array([0.0, 0, 1, 1]), np.array([0.0, 1, 0, 1]))[0]
-    at_corner = (np.linalg.norm(points[:, None] - ends, axis=2) < 1e-6).any(1)
-    found["angle"] = triangles(points, corners[~at_corner[corners].any(1)])["angle"]
+    found["angle"] = triangles(points, corners[~at_corner(net, points)[corners].any(1)])["angle"]
     uv, off = (uv, 0.0) if uv is not None else feet(net.surface, points)
     some = corners if most is None or len(corners) <= most else corners[np.random.default_rng(1).choice(len(corners), most, replace=False)]
     return found | {"over": round(chord_error(net.surface, points, uv, some) / limit, 4)} | ({"nodes_off": off} if off > 1e-3 * limit else {})
@@ -234,11 +240,12 @@ def main():
     ask.add_argument("--occt", action="store_true")
     ask.add_argument("--truth")
     ask.add_argument("--write")
+    ask.add_argument("--draw")
     given = ask.parse_args()
     if given.write:
         write(given.write, given.loft)
         return 0
-    own, others, failed, peer = [], [], [], Peer(given.truth, given.occt)
+    own, others, failed, worst, peer = [], [], [], Worst(), Peer(given.truth, given.occt)
     chosen = [int(k) for k in given.limits.split(",")]
     with tempfile.TemporaryDirectory() as folder:
         for seed in range(given.first, given.first + given.cases):
@@ -255,9 +262,14 @@ def main():
                     others.append({k: v for k, v in beside.items() if k != "limit"})
                 print(json.dumps(found), flush=True)
                 (failed if "failed" in found else own).append(found)
+                if given.draw and "failed" not in found:
+                    points, corners, _ = read_obj(pathlib.Path(folder) / "net.obj")
+                    worst.look(f"{seed}, {limit:.3g} mm", points, corners, ~at_corner(net, points)[corners].any(1)[:, None])
     tables(own, others, chosen)
     broken = [row["case"] for row in own if row["over"] > 1.0]
     print(f"\nfailed: {len(failed)}; limit not kept: {len(broken)} {broken}")
+    if given.draw:
+        worst.draw(given.draw)
     return 1 if failed or broken else 0
 
 

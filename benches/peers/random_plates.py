@@ -1,11 +1,13 @@
 """usage: random_plates.py LOFT [--cases N] [--first SEED] [--quads] [--gmsh] [--triangles COUNT] [--write FOLDER]
+       [--draw FILE]
 
 Meshes random plates (plates.py) at two sizes each, of about COUNT (20 000) and a quarter of as many elements, and prints one line a mesh and a
 table of least, 10 %, median and largest value of every figure; with --gmsh the same plates by Gmsh's Frontal-Delaunay (with --quads by its
 algorithm 8 with recombination 3), in turn. Times: ours is the mesh stage of one thread, Gmsh's the CPU of its 2-D mesher alone; `rate` is
 thousands of elements a second, and rates are compared, for at one size the two do not make as many. `angle_away` is the least angle away from
 sharp corners: no angle counts at a node of the border whose elements have less than 60° together. `--write` writes the coarser script of
-each case into a folder and meshes nothing. Needs `pip install gmsh numpy`."""
+each case into a folder and meshes nothing; `--draw` draws the places of the worst triangles of the five worst meshes. Needs
+`pip install gmsh matplotlib numpy`."""
 import argparse
 import json
 import pathlib
@@ -18,6 +20,7 @@ import time
 import numpy as np
 from plates import Plate
 from quality import Cpu, gmsh_mesh, quads, triangles
+from worst import Worst, corner_angles
 
 
 def read_obj(path):
@@ -36,13 +39,15 @@ def read_obj(path):
 SHARP = 60.0
 
 
+def away_from_corners(points, corners):
+    """Which corners of triangles count: all but those at nodes of the border whose triangles have less than SHARP together."""
+    total = np.bincount(corners.ravel(), corner_angles(points, corners).ravel(), len(points))
+    return total[corners] >= SHARP
+
+
 def angle_away(points, corners):
-    """Least angle of triangles, degrees, but for those at nodes of the border whose triangles have less than SHARP together."""
-    p = points[corners]
-    out, back = np.roll(p, -1, 1) - p, np.roll(p, 1, 1) - p
-    angles = np.degrees(np.arctan2(np.linalg.norm(np.cross(out, back), axis=2), (out * back).sum(2)))
-    total = np.bincount(corners.ravel(), angles.ravel(), len(points))
-    return round(float(angles[total[corners] >= SHARP].min()), 2)
+    """Least angle of triangles that counts, degrees."""
+    return round(float(corner_angles(points, corners)[away_from_corners(points, corners)].min()), 2)
 
 
 def measure(points, three, four):
@@ -138,10 +143,11 @@ def main():
     ask.add_argument("--quads", action="store_true")
     ask.add_argument("--gmsh", action="store_true")
     ask.add_argument("--write", type=pathlib.Path)
+    ask.add_argument("--draw", type=pathlib.Path)
     given = ask.parse_args()
     if given.write:
         return write(given)
-    own, other, failed = [], [], []
+    own, other, failed, worst = [], [], [], Worst()
     with tempfile.TemporaryDirectory() as folder:
         for seed in range(given.first, given.first + given.cases):
             plate = Plate(seed)
@@ -151,6 +157,9 @@ def main():
                 found |= ours(given.loft, plate, settings, folder)
                 print(json.dumps(found), flush=True)
                 (failed if "failed" in found else own).append(found)
+                if given.draw and "triangles" in found:
+                    points, corners, _ = read_obj(pathlib.Path(folder) / "fine.obj")
+                    worst.look(f"{seed}, {size} mm", points, corners, away_from_corners(points, corners))
                 if given.gmsh:
                     other.append(theirs(plate, size, given.quads))
                     print("    " + json.dumps(other[-1]), flush=True)
@@ -162,6 +171,8 @@ def main():
         table("our rate over Gmsh's", [{"times": a["rate"] / b["rate"]} for a, b in pairs])
         print(f"\nGmsh failed: {len(other) - len(made)}")
     print(f"\nfailed: {len(failed)}")
+    if given.draw:
+        worst.draw(given.draw)
     return 1 if failed else 0
 
 

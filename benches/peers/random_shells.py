@@ -1,11 +1,12 @@
 """usage: random_shells.py LOFT [--cases N] [--first SEED] [--gmsh] [--triangles COUNT] [--method WORD] [--write FOLDER]
+       [--draw FILE]
 
 Meshes random shells (shells.py) of 10 to 60 faces, of about COUNT (20 000) triangles each, and prints one line a mesh and a table of least, 10 %,
 median and largest value of every figure, and those that are not sound: an edge with more than two triangles or run twice the same way, another
 Euler number, an area that is off by more than 1 %, an angle below 30° away from corners sharper than 45°. With --gmsh the same shells, as STEP from loft, by
 Gmsh's Frontal-Delaunay at a size that gives as many triangles, in turn. Times: ours is the CPU of the mesh stage of one thread, Gmsh's that of its 2-D
-mesher alone. --write FOLDER writes ten of the scripts, coarse, and truth.json instead.
-Needs `pip install gmsh numpy`."""
+mesher alone. --write FOLDER writes ten of the scripts, coarse, and truth.json instead;
+--draw draws the places of the worst triangles of the five worst shells. Needs `pip install gmsh matplotlib numpy`."""
 import argparse
 import json
 import os
@@ -19,6 +20,7 @@ import numpy as np
 from quality import Cpu, gmsh_mesh, triangles
 from random_plates import table
 from shells import Shell
+from worst import Worst, corner_angles
 
 LEAST_ANGLE, SHARP_CORNER = 30.0, 45.0
 
@@ -37,14 +39,17 @@ def read_obj(path):
     return np.array(points), np.array(corners, int), np.array(owner, int)
 
 
-def corner_angles(points, corners):
-    """Of each triangle at its three corners, degrees."""
-    found = []
-    for k in range(3):
-        a, b, c = (points[corners[:, (k + j) % 3]] for j in range(3))
-        x, y = b - a, c - a
-        found.append(np.degrees(np.arctan2(np.linalg.norm(np.cross(x, y), axis=1), np.einsum("ij,ij->i", x, y))))
-    return np.stack(found, 1)
+def away_from_corners(points, corners, owner):
+    """Which triangles touch no sharp corner of their face: a node of its border at which the triangles of the face have a sharp angle together."""
+    angles = corner_angles(points, corners)
+    sides = np.concatenate([corners[:, [k, (k + 1) % 3]] for k in range(3)])
+    key = owner[:, None] * len(points) + corners
+    own = np.tile(owner, 3)
+    _, place, number = np.unique(np.column_stack([own, np.sort(sides, 1)]), axis=0, return_index=True, return_counts=True)
+    border = np.concatenate([(own[place] * len(points) + sides[place, k])[number == 1] for k in (0, 1)])
+    keys, at = np.unique(key.ravel(), return_inverse=True)
+    sharp = (np.bincount(at, angles.ravel()) < SHARP_CORNER) & np.isin(keys, border)
+    return ~sharp[at.reshape(-1, 3)].any(1)
 
 
 def measure(points, corners, owner):
@@ -57,17 +62,8 @@ def measure(points, corners, owner):
     found["euler"] = len(np.unique(corners)) - len(once) + len(corners)
     a, b, c = (points[corners[:, k]] for k in range(3))
     found["area"] = float(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
-    # A corner of a face is a node of its border whose triangles in that face fill a sharp angle.
-    angles = corner_angles(points, corners)
-    key = owner[:, None] * len(points) + corners
-    own = np.tile(owner, 3)
-    _, place, number = np.unique(np.column_stack([own, np.sort(sides, 1)]), axis=0, return_index=True, return_counts=True)
-    border = np.concatenate([(own[place] * len(points) + sides[place, k])[number == 1] for k in (0, 1)])
-    keys, at = np.unique(key.ravel(), return_inverse=True)
-    fan = np.bincount(at, angles.ravel())
-    sharp = (fan < SHARP_CORNER) & np.isin(keys, border)
-    away = ~sharp[at.reshape(-1, 3)].any(1)
-    least = np.where(away, angles.min(1), 180.0)
+    away = away_from_corners(points, corners, owner)
+    least = np.where(away, corner_angles(points, corners).min(1), 180.0)
     worst = int(least.argmin())
     found["away"] = round(float(least[worst]), 2)
     found["below"] = int((least < LEAST_ANGLE).sum())
@@ -159,10 +155,11 @@ def main():
     ask.add_argument("--method", default="auto")
     ask.add_argument("--gmsh", action="store_true")
     ask.add_argument("--write")
+    ask.add_argument("--draw")
     given = ask.parse_args()
     if given.write:
         return write(given.write)
-    own, other, failed = [], [], []
+    own, other, failed, worst = [], [], [], Worst()
     with tempfile.TemporaryDirectory() as folder:
         for seed in range(given.first, given.first + given.cases):
             shell = Shell(seed)
@@ -173,6 +170,9 @@ def main():
             found |= ours(given.loft, shell, f"size: {size}mm  method: {given.method}", folder, area)
             print(json.dumps(found), flush=True)
             (failed if "failed" in found else own).append(found)
+            if given.draw and "failed" not in found:
+                points, corners, owner = read_obj(pathlib.Path(folder) / "fine.obj")
+                worst.look(f"{seed} {shell.kind}", points, corners, away_from_corners(points, corners, owner)[:, None])
             if given.gmsh and "failed" not in found:
                 peer = theirs(round((area / found["triangles"] / 0.433) ** 0.5, 4), folder)
                 print(json.dumps({"gmsh": seed} | peer), flush=True)
@@ -184,6 +184,8 @@ def main():
         table("Gmsh", [{k: v for k, v in row.items() if k not in skip} for row in other])
     wrong, sharp = ([row["case"] for row in own if row[key]] for key in ("wrong", "sharp"))
     print(f"\nfailed: {len(failed)}; wrong: {wrong}; below {LEAST_ANGLE:g}°: {len(sharp)} {sharp}")
+    if given.draw:
+        worst.draw(given.draw)
     return 1 if failed or wrong else 0
 
 
