@@ -57,7 +57,8 @@ pub struct Triangulated {
     pub keeps_limits: bool,
 }
 
-/// Move of a node from the interpolated surface to the surface itself, over the wanted length, from which on the first was no help.
+/// Largest move of a node from the interpolated surface onto the surface itself, over the wanted length; where one is larger the face is meshed
+/// on the surface itself.
 const MAX_MOVE: f64 = 0.02;
 
 /// Triangulates a face.
