@@ -41,6 +41,7 @@ class Worst:
 
         matplotlib.use("Agg")
         import matplotlib.pyplot as plt
+        from PIL import Image
         from matplotlib.collections import PolyCollection
 
         figure, axes = plt.subplots(1, len(self.kept), figsize=(3.2 * len(self.kept), 3.6), squeeze=False)
@@ -51,4 +52,6 @@ class Worst:
             axis.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal", xticks=[], yticks=[])
             axis.set_title(f"{title}\n{angle:.1f}°", fontsize=8)
         figure.tight_layout()
-        figure.savefig(path, dpi=80, bbox_inches="tight")
+        figure.savefig(path, dpi=70, bbox_inches="tight")
+        with Image.open(path) as drawn:
+            drawn.convert("RGB").quantize(48).save(path, optimize=True)
