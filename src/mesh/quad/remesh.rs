@@ -84,7 +84,6 @@ impl Remesh<'_> {
     fn cavities(&self, f: u32) -> Vec<Vec<u32>> {
         let net = &*self.of.net;
         let c = net.face[f as usize];
-        let star = |n: u32| self.of.of[n as usize].clone();
         let beside = |k: usize| {
             let (a, b) = (c[k], c[(k + 1) % 4]);
             self.of.of[a as usize].iter().copied().find(|g| *g != f && self.of.of[b as usize].contains(g))
@@ -92,13 +91,13 @@ impl Remesh<'_> {
         let sides: Vec<u32> = (0..4).filter_map(beside).collect();
         let mut all: Vec<Vec<u32>> = sides.iter().map(|g| vec![f, *g]).collect();
         all.push([&[f], &sides[..]].concat());
-        let stars: Vec<Vec<u32>> = c.iter().map(|n| star(*n)).collect();
-        all.extend(stars.iter().map(|star| [&[f], &star[..]].concat()));
+        let stars = c.map(|n| &self.of.of[n as usize][..]);
+        all.extend(stars.iter().map(|star| [&[f], *star].concat()));
         for k in 0..4 {
-            all.push([&stars[k][..], &stars[(k + 1) % 4][..]].concat());
+            all.push([stars[k], stars[(k + 1) % 4]].concat());
         }
         for k in 0..2 {
-            all.push([&stars[k][..], &stars[k + 2][..]].concat());
+            all.push([stars[k], stars[k + 2]].concat());
         }
         all.push(stars.concat());
         distinct(all)
@@ -145,7 +144,7 @@ impl Remesh<'_> {
     fn optimized(&self, disk: &DiskOfQuads, filling: Filling, mut xy: Vec<DVec2>) -> NewQuads {
         let (n, faces) = (disk.ring.len(), filling.faces);
         let step = self.input.always;
-        let strain = |xy: &[DVec2], node: u32| -> f64 {
+        let distortion = |xy: &[DVec2], node: u32| -> f64 {
             let round = faces.iter().filter(|f| f.contains(&node));
             round.map(|f| least_sine(f.map(|n| xy[n as usize]))).map(|q| 1.0 / q.max(FLAT_CORNER)).map(|x| x * x * x * x).sum()
         };
@@ -153,10 +152,10 @@ impl Remesh<'_> {
             for reach in REMESH.steps {
                 for _ in 0..REMESH.sweeps {
                     for node in n..xy.len() {
-                        let (mut place, mut now) = (xy[node], strain(&xy, node as u32));
+                        let (mut place, mut now) = (xy[node], distortion(&xy, node as u32));
                         for way in [DVec2::X, DVec2::NEG_X, DVec2::Y, DVec2::NEG_Y] {
                             xy[node] = place + way * (reach * step);
-                            let there = strain(&xy, node as u32);
+                            let there = distortion(&xy, node as u32);
                             if there < now {
                                 (place, now) = (xy[node], there);
                             }

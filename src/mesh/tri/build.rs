@@ -71,7 +71,8 @@ pub fn triangulate(task: &Task, job: &Job) -> Outcome<Triangulated> {
     let mut optimizer = MeshOptimizer::new(triangulation, chart_surface, task.field, task.settings);
     optimizer.settle();
     job.go_on()?;
-    // Where lengths were wrong, the face is not optimized before better ones are known.
+    // Where lengths were wrong, the face is not optimized before better ones are known: its nodes stay on the interpolated surface, and limits are
+    // not kept.
     let mut bad = task.limit_check.map_or(Vec::new(), |limit_check| optimizer.broken(limit_check, &[]));
     if optimizer.are_few(&bad) {
         if bad.len() * REPAIR.few_over_limit <= optimizer.triangulation.tri.len() {
