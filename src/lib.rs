@@ -75,6 +75,8 @@ pub mod draw;
 #[doc(hidden)]
 pub mod geometry;
 #[doc(hidden)]
+pub mod hydrostatics;
+#[doc(hidden)]
 pub mod io;
 #[doc(hidden)]
 pub mod lang;

@@ -83,9 +83,20 @@ pub fn cyclic<T: Linear>(rows: &[Row], right: &mut [T]) {
 /// Newton with a bracket [Press et al. 1992, rtsafe]: a root of `f` (value, derivative) between `low` and `high`, where it changes sign.
 ///
 /// Steps that leave the bracket become bisections; ends when the step is below `accuracy` or after 100 rounds.
-pub fn bracketed(mut low: f64, mut high: f64, accuracy: f64, mut f: impl FnMut(f64) -> (f64, f64)) -> f64 {
+pub fn bracketed(low: f64, high: f64, accuracy: f64, mut f: impl FnMut(f64) -> (f64, f64)) -> f64 {
     let rising = f(high).0 >= f(low).0;
-    let mut x = 0.5 * (low + high);
+    bracketed_from((low, high), rising, 0.5 * (low + high), accuracy, f)
+}
+
+/// [`bracketed`] of a function known to rise or to fall, from a first guess.
+pub fn bracketed_from(
+    (mut low, mut high): (f64, f64),
+    rising: bool,
+    guess: f64,
+    accuracy: f64,
+    mut f: impl FnMut(f64) -> (f64, f64),
+) -> f64 {
+    let mut x = guess;
     for _ in 0..100 {
         let (value, slope) = f(x);
         if value == 0.0 {

@@ -126,6 +126,42 @@ pub const DAMPED_SLOPES: f64 = 1e-12;
 pub const FLAT_BOX: f64 = 1e-9;
 /// Nearest points are the nearest ones to this share of their distance.
 pub const NEAREST: f64 = 1e-9;
+/// Share of the sum of sizes to which trimmed faces that a water plane crosses are integrated.
+pub const FLOAT_TRIMMED: f64 = 1e-9;
+/// Difference of the volume below water from two directions that still is one volume, as a share of wetted area times length.
+pub const FLOAT_CLOSED: f64 = 1e-6;
+/// How near to a water plane what lies along it is, as a share of the diagonal of the body.
+pub const FLOAT_ALONG: f64 = 1e-7;
+/// Residuals of a position of rest that end its search: of the volume as a share of it, of the arms as shares of the length of the body.
+pub const FLOAT_AT_REST: f64 = 1e-12;
+/// The same where rounds do not lower them any more.
+pub const FLOAT_NEARLY_AT_REST: f64 = 1e-9;
+/// Difference of two rules that ends a cell of a floating body, as a share of its area times the powers of the reach of the body.
+pub const FLOAT_CELL: f64 = 1e-10;
+/// The same where a rule of more points does not come nearer: the face is less than analytic there.
+pub const FLOAT_ROUGH_CELL: f64 = 1e-8;
+/// A flat face is level with the water where the sine of the angle between them is below this.
+pub const FLOAT_LEVEL: f64 = 1e-12;
+/// Share of the rows between which the farthest place of a waterline is found.
+pub const FLOAT_FARTHEST: f64 = 1e-9;
+/// How far beside a plane a waterline or cross section is taken, as a share of the diagonal of the body: faces may meet in the plane itself.
+pub const FLOAT_BESIDE: f64 = 1e-10;
+/// Difference of two rules that ends a part of a cell below water, as a share of what the whole body may have.
+pub const FLOAT_WET: f64 = 1e-12;
+/// Share of the range of depths to which a first depth of a position is found.
+pub const FLOAT_FIRST_DEPTH: f64 = 1e-3;
+/// By how much of the energy before a row of faired points might be fairer within the same distance.
+pub const FAIR_ROW: f64 = 1e-6;
+/// The same of rows of points.
+pub const FAIR_ROWS: f64 = 1e-3;
+/// Knots of borders over 0…1 that are nearer are one.
+pub const BRIDGE_KNOT: f64 = 1e-12;
+/// Heights of a curve over a plane of this share of the largest are rounding.
+pub const CURVE_HEIGHT_ROUNDING: f64 = 4e-16;
+/// Crossings of a curve and a plane that are nearer than this share of the curve's parameters are one: a touch is known no better.
+pub const CURVE_CROSSINGS_APART: f64 = 1e-7;
+/// Points of a section and of a line of a hull that are nearer than this share of the hull's diagonal are one.
+pub const OFFSETS_SAME: f64 = 1e-6;
 
 impl Tolerance {
     /// Tolerance with the given point distance in a model of the given box diagonal, both in model units.

@@ -46,11 +46,16 @@ pub fn mark_radius(node: bool, size: f64) -> (f64, f64) {
     if node { (0.30 * size, 0.18 * size) } else { (0.22 * size, 0.0) }
 }
 
+/// Size of words, pixels.
+pub(super) fn size_of_words(settings: &Settings) -> f64 {
+    (settings.width.min(settings.height) as f64 / SHARE).clamp(SIZES.0, SIZES.1)
+}
+
 impl Layout {
     /// Shares the page out.
     pub fn new(scene: &Scene, settings: &Settings) -> Self {
         let page = Rect::new(DVec2::ZERO, DVec2::new(settings.width as f64, settings.height as f64));
-        let size = (page.max.min_element() / SHARE).clamp(SIZES.0, SIZES.1);
+        let size = size_of_words(settings);
         let margin = 1.1 * size;
         let mut layout = Self {
             size,
@@ -153,7 +158,7 @@ pub fn items(scene: &Scene, camera: &Camera, image: &Image, layout: &Layout, den
 }
 
 /// The words, or their beginning with `…` where there is no room for all.
-fn fitting(words: &str, size: f64, room: f64) -> String {
+pub(super) fn fitting(words: &str, size: f64, room: f64) -> String {
     if font::width(words, size) <= room {
         return words.to_owned();
     }

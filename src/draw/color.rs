@@ -28,6 +28,8 @@ pub const KINK: Rgb = Rgb(226, 116, 0);
 pub const FREE: Rgb = Rgb(214, 18, 30);
 /// Edges of three faces or more.
 pub const CROWDED: Rgb = Rgb(176, 0, 176);
+/// Curvature combs.
+pub const COMB: Rgb = Rgb(150, 40, 150);
 /// Where nothing is known of a value.
 pub const UNKNOWN: Rgb = Rgb(190, 190, 190);
 

@@ -17,19 +17,31 @@ pub(super) const MOST: usize = 400;
 pub enum Show {
     /// Nothing but light.
     Light,
-    /// The larger of the two principal curvatures, with its sign: above zero where the surface bends away from its
-    /// normal; 1/model unit.
-    Curvature,
+    /// A curvature with its sign.
+    Curvature(Bend),
+    /// Gauss and mean curvature beside light, at the points that light needs.
+    Bends,
     /// Reflections, which need normals close together.
     Stripes,
+}
+
+/// Which curvature is shown. Those by length are above zero where the surface bends away from its normal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Bend {
+    /// The larger of the two principal ones, 1/model unit.
+    Principal,
+    /// Half the sum of the two, 1/model unit.
+    Mean,
+    /// Their product, 1/model unit².
+    Gauss,
 }
 
 impl Show {
     /// Least steps of a patch that is bent: what is shown between points is as smooth as they are dense.
     pub(super) fn least(self) -> usize {
         match self {
-            Self::Light => 4,
-            Self::Curvature => 32,
+            Self::Light | Self::Bends => 4,
+            Self::Curvature(_) => 32,
             Self::Stripes => 96,
         }
     }
@@ -44,6 +56,8 @@ pub fn surface(model: &Model, id: SurfaceId, flipped: bool, fine: f64, show: Sho
         sheet.name = named.name.clone();
         if flipped {
             sheet.normals.iter_mut().for_each(|n| *n = -*n);
+            // Seen from the other side a valley is a hill.
+            sheet.bends.iter_mut().for_each(|bend| bend[1] = -bend[1]);
             sheet.triangles.iter_mut().for_each(|t| t.swap(1, 2));
         }
         sheet
@@ -59,10 +73,24 @@ pub fn patch(surface: &Surface, patch: &Patch, fine: f64, show: Show) -> Sheet {
     }
 }
 
-pub(super) fn even(sheet: (Vec<DVec3>, Vec<DVec3>, Vec<[u32; 3]>), values: Vec<f32>) -> Sheet {
+/// A sheet without a name, with what its points show beside light.
+pub(super) fn shown(sheet: (Vec<DVec3>, Vec<DVec3>, Vec<[u32; 3]>), show: Show, jet: &mut dyn FnMut(usize) -> Jet2) -> Sheet {
     let (points, normals, triangles) = sheet;
-    let paint = if values.is_empty() { Paint::Even(super::color::FACE) } else { Paint::OfPoints(values) };
-    Sheet { name: String::new(), points, normals, triangles, edges: Vec::new(), paint }
+    let (mut paint, mut bends) = (Paint::Even(super::color::FACE), Vec::new());
+    match show {
+        Show::Light | Show::Stripes => {}
+        Show::Curvature(bend) => {
+            paint = Paint::OfPoints(normals.iter().enumerate().map(|(k, n)| curvature(&jet(k), *n, bend) as f32).collect());
+        }
+        Show::Bends => {
+            let both = |(k, n): (usize, &DVec3)| {
+                let jet = jet(k);
+                [Bend::Gauss, Bend::Mean].map(|bend| curvature(&jet, *n, bend) as f32)
+            };
+            bends = normals.iter().enumerate().map(both).collect();
+        }
+    }
+    Sheet { name: String::new(), points, normals, triangles, edges: Vec::new(), paint, bends }
 }
 
 /// Places between two parameters, each leaning into the range.
@@ -100,10 +128,6 @@ fn square(surface: &Surface, patch: &Patch, fine: f64, show: Show) -> Sheet {
         }
     };
     let normals: Vec<DVec3> = (0..jets.len()).map(normal).collect();
-    let values = match show {
-        Show::Light | Show::Stripes => Vec::new(),
-        Show::Curvature => jets.iter().zip(&normals).map(|(jet, n)| curvature(jet, *n) as f32).collect(),
-    };
     let at = |i: usize, j: usize| (j * (nu + 1) + i) as u32;
     let mut triangles = Vec::with_capacity(2 * nu * nv);
     for j in 0..nv {
@@ -112,14 +136,19 @@ fn square(surface: &Surface, patch: &Patch, fine: f64, show: Show) -> Sheet {
             triangles.push([at(i, j), at(i + 1, j + 1), at(i, j + 1)]);
         }
     }
-    even((jets.iter().map(|j| j.p).collect(), normals, triangles), values)
+    shown((jets.iter().map(|j| j.p).collect(), normals, triangles), show, &mut |k| jets[k])
 }
 
-/// The principal curvature of larger size; not a number where the surface is singular.
-pub fn curvature(jet: &Jet2, normal: DVec3) -> f64 {
+/// A curvature; not a number where the surface is singular.
+pub fn curvature(jet: &Jet2, normal: DVec3, bend: Bend) -> f64 {
     let (mean, spread) = jet.curvatures(normal);
     // Bending towards the normal is a valley seen from its side.
-    -(if mean >= 0.0 { mean + spread } else { mean - spread })
+    match bend {
+        Bend::Principal if mean >= 0.0 => -(mean + spread),
+        Bend::Principal => spread - mean,
+        Bend::Mean => -mean,
+        Bend::Gauss => (mean - spread) * (mean + spread),
+    }
 }
 
 fn triangle(surface: &Surface, fine: f64, show: Show) -> Sheet {
@@ -130,16 +159,14 @@ fn triangle(surface: &Surface, fine: f64, show: Show) -> Sheet {
     let (a, b) = steps(&inner, (1.0, 1.0), fine, show);
     let n = a.max(b);
     let index = |i: usize, j: usize| (j * (n + 1) - j * j.saturating_sub(1) / 2 + i) as u32;
-    let (mut points, mut normals, mut values, mut triangles) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let (mut points, mut normals, mut jets, mut triangles) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for j in 0..=n {
         for i in 0..=n - j {
             let jet = jet_of(surface, i, j, n);
             let normal = surface.normal(i as f64 / n as f64, j as f64 / n as f64);
             points.push(jet.p);
             normals.push(normal);
-            if show == Show::Curvature {
-                values.push(curvature(&jet, normal) as f32);
-            }
+            jets.push(jet);
             if i + j < n {
                 triangles.push([index(i, j), index(i + 1, j), index(i, j + 1)]);
             }
@@ -148,7 +175,7 @@ fn triangle(surface: &Surface, fine: f64, show: Show) -> Sheet {
             }
         }
     }
-    even((points, normals, triangles), values)
+    shown((points, normals, triangles), show, &mut |k| jets[k])
 }
 
 fn jet_of(surface: &Surface, i: usize, j: usize, n: usize) -> Jet2 {

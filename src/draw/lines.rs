@@ -36,7 +36,9 @@ fn smooth(at: &dyn Fn(f64) -> DVec3, (a, b): (f64, f64), fine: f64, out: &mut Ve
     // What is straight needs its ends only.
     let (first, last) = (at(a), at(b));
     let along = last - first;
-    let off = |p: &DVec3| along.cross(*p - first).length() > fine * along.length();
+    // What comes back to where it began is straight only where it stays there.
+    let closed = along.length() <= fine;
+    let off = |p: &DVec3| if closed { p.distance(first) > fine } else { along.cross(*p - first).length() > fine * along.length() };
     if own.iter().any(off) {
         out.extend(own);
     } else {

@@ -61,7 +61,7 @@ fn of_elements(mesh: &Mesh, triangles: &Range<usize>, quads: &Range<usize>, meas
         values.extend(job::looking(&mesh.quads[quads.clone()]).flat_map(|q| [of(q); 2]));
     }
     let paint = if values.is_empty() { Paint::Even(FACE) } else { Paint::OfTriangles(values) };
-    Sheet { name: String::new(), points: Vec::new(), normals: Vec::new(), triangles: out, edges, paint }
+    Sheet { name: String::new(), points: Vec::new(), normals: Vec::new(), triangles: out, edges, paint, bends: Vec::new() }
 }
 
 fn of_element(mesh: &Mesh, nodes: &[u32], measure: Measure) -> f64 {

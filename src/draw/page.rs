@@ -57,6 +57,15 @@ impl Item {
         Self::Fill { points: vec![a, DVec2::new(b.x, a.y), b, DVec2::new(a.x, b.y)], color, opacity }
     }
 
+    /// Moved on the page.
+    pub(super) fn moved(mut self, by: DVec2) -> Self {
+        match &mut self {
+            Self::Stroke { points, .. } | Self::Fill { points, .. } => points.iter_mut().for_each(|p| *p += by),
+            Self::Text { at, .. } => *at += by,
+        }
+        self
+    }
+
     /// Its words; none of a shape.
     pub fn words(&self) -> &str {
         match self {

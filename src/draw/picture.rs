@@ -2,12 +2,14 @@
 
 use std::io::{self, Write};
 
+use glam::DVec2;
+
 use super::annotate::{self, Layout};
 use super::camera::{Camera, Rect, View};
 use super::page::{self, Item};
 use super::raster::{self, EdgeStyle, Image, Thick};
 use super::scene::{Kind, Scene};
-use super::{color, png, svg};
+use super::{color, font, png, svg};
 use crate::base::job;
 
 /// Edges of elements shorter than this on average, in pixels, are not drawn: they would hide the faces.
@@ -91,6 +93,42 @@ impl Picture {
         let dense = settings.edges && strength <= 0.0 && scene.sheets.iter().any(|s| !s.edges.is_empty());
         let items = annotate::items(scene, &camera, &image, &layout, dense, format);
         Self { image, items, paths, title: settings.title.clone() }
+    }
+
+    /// A flat picture: items on white paper.
+    pub(super) fn flat(items: Vec<Item>, (width, height): (usize, usize), title: &str) -> Self {
+        let image = Image { width, height, rgb: vec![u8::MAX; 3 * width * height], near: vec![f32::NEG_INFINITY; width * height] };
+        Self { image, items, paths: Vec::new(), title: title.to_owned() }
+    }
+
+    /// Rows of pixels that the words above a sheet of several pictures take.
+    pub fn heading(settings: &Settings) -> usize {
+        let size = annotate::size_of_words(settings);
+        if settings.title.is_empty() { 0 } else { ((2.6 * size).ceil() as usize).min(settings.height / 2) }
+    }
+
+    /// Several pictures on one page, each from its upper left corner on, under one title.
+    pub fn sheet(cells: Vec<(Self, (usize, usize))>, settings: &Settings) -> Self {
+        let mut whole = Self::flat(Vec::new(), (settings.width, settings.height), &settings.title);
+        for (cell, (left, top)) in cells {
+            let image = &cell.image;
+            for row in 0..image.height.min(settings.height.saturating_sub(top)) {
+                let width = image.width.min(settings.width.saturating_sub(left));
+                let (from, to) = (row * image.width, (top + row) * settings.width + left);
+                whole.image.rgb[3 * to..3 * (to + width)].copy_from_slice(&image.rgb[3 * from..3 * (from + width)]);
+                whole.image.near[to..to + width].copy_from_slice(&image.near[from..from + width]);
+            }
+            let by = DVec2::new(left as f64, top as f64);
+            whole.items.extend(cell.items.into_iter().map(|item| item.moved(by)));
+            whole.paths.extend(cell.paths.into_iter().map(|path| path.moved(by)));
+        }
+        if !settings.title.is_empty() {
+            let size = 1.3 * annotate::size_of_words(settings);
+            let at = DVec2::new(0.85 * size, 0.85 * size + font::CAPITAL * size);
+            let text = annotate::fitting(&settings.title, size, settings.width as f64 - 1.7 * size);
+            whole.items.push(Item::Text { at, size, text, color: color::INK, halo: true });
+        }
+        whole
     }
 
     /// All words on it with the room they take, in order of painting.

@@ -341,5 +341,5 @@ impl Buffer {
 
 /// Whether a paint changes inside a pixel.
 pub(super) fn is_fine(paint: &Paint) -> bool {
-    matches!(paint, Paint::Zebra)
+    matches!(paint, Paint::Zebra | Paint::Reflections | Paint::Isophotes)
 }

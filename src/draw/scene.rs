@@ -13,6 +13,10 @@ pub enum Paint {
     Sides(Rgb, Rgb),
     /// Stripes of reflected light: broken where the tangent plane breaks, bent where curvature does.
     Zebra,
+    /// Dark lines that parallel lamps, level in the picture, are reflected in.
+    Reflections,
+    /// Bands of equal angle between the normal and z.
+    Isophotes,
     /// A value for each triangle, coloured by the scene's scale.
     OfTriangles(Vec<f32>),
     /// A value for each point, coloured by the scene's scale; between points in proportion.
@@ -35,6 +39,8 @@ pub struct Sheet {
     pub edges: Vec<u8>,
     /// How it is coloured.
     pub paint: Paint,
+    /// Gauss and mean curvature at each point, where both were asked for, 1/model unit² and 1/model unit.
+    pub bends: Vec<[f32; 2]>,
 }
 
 /// What a line shows; later ones are drawn over earlier ones.
@@ -52,11 +58,13 @@ pub enum Kind {
     Crowded,
     /// An edge of one face only.
     Free,
+    /// A tooth of a curvature comb, or the line along their tips.
+    Comb,
 }
 
 impl Kind {
     /// All of them.
-    pub const ALL: [Self; 6] = [Self::Element, Self::Border, Self::Curve, Self::Kink, Self::Crowded, Self::Free];
+    pub const ALL: [Self; 7] = [Self::Element, Self::Border, Self::Curve, Self::Kink, Self::Crowded, Self::Free, Self::Comb];
 
     /// Its colour.
     pub fn color(self) -> Rgb {
@@ -67,13 +75,14 @@ impl Kind {
             Self::Kink => color::KINK,
             Self::Crowded => color::CROWDED,
             Self::Free => color::FREE,
+            Self::Comb => color::COMB,
         }
     }
 
     /// Its width in a picture 800 pixels high.
     pub fn width(self) -> f64 {
         match self {
-            Self::Element => 1.1,
+            Self::Element | Self::Comb => 1.1,
             Self::Curve => 2.2,
             Self::Border => 1.9,
             Self::Kink => 2.8,
@@ -90,6 +99,7 @@ impl Kind {
             Self::Kink => "kink",
             Self::Crowded => "three or more faces",
             Self::Free => "free edge",
+            Self::Comb => "curvature comb",
         }
     }
 

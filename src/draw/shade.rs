@@ -16,6 +16,14 @@ const HEAD: f64 = 0.52;
 const FILL: f64 = 0.26;
 /// Stripes over half a turn of the reflected view.
 const STRIPES: f64 = 36.0;
+/// Lamps round the model.
+const LAMPS: f64 = 36.0;
+/// Share of the room between two lamps that the dark line of one takes.
+const LAMP: f64 = 0.3;
+/// Bands of isophotes between a normal along z and one against it: each is 6 degrees wide.
+const BANDS: f64 = 30.0;
+/// Light and dark of stripes and bands.
+const LIGHT_DARK: [Rgb; 2] = [Rgb(250, 250, 250), Rgb(40, 46, 58)];
 
 /// Everything that shading a face needs.
 pub(super) struct Shader<'s> {
@@ -71,6 +79,8 @@ impl<'s> Shader<'s> {
                 }
             }
             Paint::Zebra => zebra(upward, to_eye, self.camera),
+            Paint::Reflections => reflections(upward, to_eye, self.camera),
+            Paint::Isophotes => isophotes(normal),
             Paint::OfTriangles(values) => self.of_scale(f64::from(values[triangle])),
             Paint::OfPoints(values) => self.of_scale((0..3).map(|k| f64::from(values[corners[k]]) * inside[k]).sum()),
         };
@@ -131,5 +141,18 @@ fn zebra(normal: DVec3, to_eye: DVec3, camera: &Camera) -> Rgb {
     let reflected = normal * (2.0 * normal.dot(to_eye)) - to_eye;
     let angle = math::asin(reflected.dot(camera.right).clamp(-1.0, 1.0));
     let stripe = (angle * STRIPES / std::f64::consts::PI).floor();
-    if stripe.rem_euclid(2.0) < 1.0 { Rgb(250, 250, 250) } else { Rgb(40, 46, 58) }
+    if stripe.rem_euclid(2.0) < 1.0 { LIGHT_DARK[0] } else { LIGHT_DARK[1] }
+}
+
+/// Dark lines where a polished surface reflects straight lamps that run along the picture's right, equally spaced round the model and far from it.
+fn reflections(normal: DVec3, to_eye: DVec3, camera: &Camera) -> Rgb {
+    let reflected = normal * (2.0 * normal.dot(to_eye)) - to_eye;
+    let turn = math::atan2(reflected.dot(camera.up), reflected.dot(camera.back)) / std::f64::consts::TAU;
+    if (turn * LAMPS).rem_euclid(1.0) < LAMP { LIGHT_DARK[1] } else { LIGHT_DARK[0] }
+}
+
+/// Bands of equal angle between the normal and z, the same from wherever they are seen.
+fn isophotes(normal: DVec3) -> Rgb {
+    let band = (math::acos(normal.z.clamp(-1.0, 1.0)) * BANDS / std::f64::consts::PI).floor();
+    if band.rem_euclid(2.0) < 1.0 { LIGHT_DARK[0] } else { LIGHT_DARK[1] }
 }

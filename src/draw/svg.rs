@@ -30,6 +30,14 @@ pub struct Path {
     lines: Vec<Vec<DVec2>>,
 }
 
+impl Path {
+    /// All lines moved on the page.
+    pub(super) fn moved(mut self, by: DVec2) -> Self {
+        self.lines.iter_mut().flatten().for_each(|p| *p += by);
+        self
+    }
+}
+
 /// The seen parts of all lines, one path for each kind. `strength`, 0…1, is that of edges of elements; widths are multiplied by `line`.
 pub fn paths(scene: &Scene, camera: &Camera, image: &Image, strength: f64, line: f64) -> Vec<Path> {
     let mut paths = Vec::new();
@@ -183,8 +191,16 @@ mod tests {
 
     #[test]
     fn base64_as_in_rfc_4648() {
-        let pairs =
-            [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foob", "Zm9vYg=="), ("fooba", "Zm9vYmE="), ("foobar", "Zm9vYmFy")];
+        let pairs = [
+            ("", ""),
+            ("f", "Zg=="),
+            ("fo", "Zm8="),
+            ("foo", "Zm9v"),
+            ("foob", "Zm9vYg=="),
+            ("fooba", "Zm9vYmE="),
+            ("foobar", "Zm9vYmFy"),
+            ("\u{7ff}\u{fff}?", "37/gv78/"),
+        ];
         for (plain, coded) in pairs {
             assert_eq!(base64(plain.as_bytes()), coded);
         }

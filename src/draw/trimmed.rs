@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::faces::{MAX_SAMPLES, MOST, Show, curvature, even};
+use super::faces::{Bend, MAX_SAMPLES, MOST, Show, curvature, shown};
 use super::scene::Sheet;
 use crate::base::bbox::Box3;
 use crate::base::job::Job;
@@ -50,11 +50,7 @@ pub(super) fn sheet(surface: &Surface, fine: f64, show: Show) -> Sheet {
     }
     let (points, uv, triangles) = filled(surface, outline, &places, fine, show);
     let normals: Vec<DVec3> = uv.iter().map(|(u, v)| surface.normal(*u, *v)).collect();
-    let values = match show {
-        Show::Curvature => uv.iter().zip(&normals).map(|((u, v), n)| curvature(&surface.jet(*u, *v), *n) as f32).collect(),
-        Show::Light | Show::Stripes => Vec::new(),
-    };
-    even((points, normals, triangles), values)
+    shown((points, normals, triangles), show, &mut |k| surface.jet(uv[k].0, uv[k].1))
 }
 
 /// Points, their places and triangles.
@@ -66,7 +62,7 @@ fn filled(surface: &Surface, mut outline: Outline, places: &[(f64, f64)], fine: 
     let Some(chart) = Chart::new(surface, places.iter().copied()) else { return none };
     outline.xy = places.iter().map(|uv| chart.xy(*uv)).collect();
     let bounds = Box3::of(outline.p.iter().copied());
-    let bend = places.iter().map(|(u, v)| curvature(&surface.jet(*u, *v), surface.normal(*u, *v)).abs());
+    let bend = places.iter().map(|(u, v)| curvature(&surface.jet(*u, *v), surface.normal(*u, *v), Bend::Principal).abs());
     let within = inner_bends(surface, places);
     let bend = bend.chain(within).filter(|k| k.is_finite()).fold(0.0, f64::max);
     // A chord of a bend k over h is k·h²/8 away.
@@ -108,5 +104,5 @@ fn inner_bends(surface: &Surface, places: &[(f64, f64)]) -> Vec<f64> {
     let (u, v) = (range(|p| p.0), range(|p| p.1));
     let at = |(low, high): (f64, f64), k: usize| low + (high - low) * (k as f64 + 0.5) / MAX_SAMPLES as f64;
     let places = (0..MAX_SAMPLES * MAX_SAMPLES).map(|k| (at(u, k % MAX_SAMPLES), at(v, k / MAX_SAMPLES)));
-    places.map(|(u, v)| curvature(&surface.jet(u, v), surface.normal(u, v)).abs()).collect()
+    places.map(|(u, v)| curvature(&surface.jet(u, v), surface.normal(u, v), Bend::Principal).abs()).collect()
 }

@@ -1,4 +1,4 @@
-//! How faces join along the edges they share: gap and angle of the normals.
+//! How faces join along the edges they share: gap, angle of the normals, jump of the curvature across.
 //!
 //! Each segment that two faces share is sampled in equal steps along the first face's own border, at least 200 and 20 a
 //! span; round the least and the largest value found the samples are refined. So a bump narrower than a step may be missed.
@@ -14,7 +14,7 @@ use super::topology::{EdgeId, Model, Patch, PatchId, SurfaceId};
 use crate::base::math::angle_between;
 use crate::base::par;
 use crate::base::solve::lowest;
-use crate::base::tolerance::{NEAREST, Tolerance};
+use crate::base::tolerance::{NEAREST, PARALLEL, Tolerance};
 use crate::network::Network;
 use crate::surface::{OneSided, Surface};
 
@@ -56,6 +56,9 @@ pub struct Contact {
     /// Angle between the normals of the faces, whatever their sides, 0 to a right angle, radians; `None` where a face has
     /// no normal anywhere on the segment.
     pub angle: Option<Spread>,
+    /// Size of the difference of the curvatures of the faces across the segment, both seen from one side, 1/model units; `None` where a
+    /// face has none anywhere on the segment.
+    pub curvature: Option<Spread>,
 }
 
 /// A face's side of a segment: a part of a piece of its loop.
@@ -91,6 +94,22 @@ impl SegmentSide<'_> {
     fn normal(&self, (u, v): (f64, f64)) -> DVec3 {
         let lean = |x: f64, (low, high): (f64, f64)| if x - low > high - x { OneSided::Before } else { OneSided::After };
         self.surface.normal_one_sided(u, v, (lean(u, self.patch.u), lean(v, self.patch.v)))
+    }
+
+    /// Normal curvature of the face at (u, v) on its border across a direction, seen from a unit normal, 1/model units; not a number
+    /// where the face is singular.
+    fn curvature_across(&self, (u, v): (f64, f64), along: DVec3, normal: DVec3) -> f64 {
+        let side = |x: f64, (low, high): (f64, f64)| if x - low > high - x { OneSided::Before } else { OneSided::After };
+        let jet = self.surface.jet_one_sided(u, v, (side(u, self.patch.u), side(v, self.patch.v)));
+        let across = normal.cross(along).normalize_or_zero();
+        let (e, f, g) = (jet.du.length_squared(), jet.du.dot(jet.dv), jet.dv.length_squared());
+        let area = e * g - f * f;
+        if area <= PARALLEL * e * g || across == DVec3::ZERO {
+            return f64::NAN;
+        }
+        let (p, q) = (across.dot(jet.du), across.dot(jet.dv));
+        let (a, b) = ((g * p - f * q) / area, (e * q - f * p) / area);
+        a * a * jet.duu.dot(normal) + 2.0 * a * b * jet.duv.dot(normal) + b * b * jet.dvv.dot(normal)
     }
 
     /// Spans of the surface along the segment.
@@ -287,7 +306,7 @@ fn foot(jet: impl Fn(f64) -> BorderJet, p: DVec3, near: f64, range: (f64, f64)) 
     down(&jet, p, near, range)
 }
 
-/// Gap and angle along the segment that two borders share.
+/// Gap, angle and jump of curvature along the segment that two borders share.
 fn contact(a: &SegmentSide, b: &SegmentSide, joins: &Joins, segment: usize) -> Contact {
     let steps = STEPS.max(STEPS_A_SPAN * a.spans().max(b.spans()));
     let at = |f: f64| {
@@ -307,6 +326,16 @@ fn contact(a: &SegmentSide, b: &SegmentSide, joins: &Joins, segment: usize) -> C
         let turn = angle_between(m, n);
         turn.min(std::f64::consts::PI - turn)
     };
+    let curvature = |f: f64| {
+        let (uv, p, along) = a.jet(a.station(f));
+        let (other, ..) = b.jet(b.foot(p, b.station(f)));
+        let (m, n) = (a.normal(uv), b.normal(other));
+        if m == DVec3::ZERO || n == DVec3::ZERO {
+            return f64::NAN;
+        }
+        let n = if m.dot(n) < 0.0 { -n } else { n };
+        (a.curvature_across(uv, along, m) - b.curvature_across(other, along, n)).abs()
+    };
     let point = |f: f64| at(f).0;
     Contact {
         faces: (a.face, b.face),
@@ -315,6 +344,7 @@ fn contact(a: &SegmentSide, b: &SegmentSide, joins: &Joins, segment: usize) -> C
         middle: joins.middle(segment),
         gap: spread(steps, gap, point).unwrap_or(Spread { min: 0.0, max: 0.0, mean: 0.0, at: point(0.5) }),
         angle: spread(steps, angle, point),
+        curvature: spread(steps, curvature, point),
     }
 }
 

@@ -6,10 +6,12 @@
 
 use glam::{DMat3, DVec3};
 
+pub use super::measure_below::Below;
 use super::measure_cut_triangles::cut_triangles_integral;
 use super::measure_flat::flat_integral;
 use super::measure_quadrature::{Integrand, Rectangle, WHOLE, integral};
 use super::measure_triangles::triangles_integral;
+pub use super::measure_trimmed::border_crossings;
 use super::measure_trimmed::trimmed_integral;
 use crate::base::bbox::Box3;
 use crate::base::fault::Result;
@@ -186,12 +188,7 @@ fn center(surfaces: &[Surface]) -> DVec3 {
 }
 
 /// The integral of `f(jet, p − about)` over a surface, with its error estimate.
-pub(super) fn over<const N: usize>(
-    surface: &Surface,
-    about: DVec3,
-    accuracy: f64,
-    f: &impl Fn(&Jet2, DVec3) -> [f64; N],
-) -> ([f64; N], [f64; N]) {
+pub fn over<const N: usize>(surface: &Surface, about: DVec3, accuracy: f64, f: &impl Fn(&Jet2, DVec3) -> [f64; N]) -> ([f64; N], [f64; N]) {
     let at = |jet: &Jet2| f(jet, jet.p - about);
     // Of a face in a plane of the coordinates some terms are nothing but rounding: a share of what they would be if the normal and
     // the way there had all components alike counts as their size.
@@ -207,10 +204,23 @@ pub(super) fn over<const N: usize>(
         _ if surface.is_flat() => flat_integral(surface, accuracy, integrand),
         (Domain::Loop, _) => {
             let patchwise = if surface.is_scattered() { cut_triangles_integral(surface, accuracy, &at) } else { None };
-            patchwise.unwrap_or_else(|| trimmed_integral(surface, accuracy, integrand))
+            patchwise.unwrap_or_else(|| trimmed_integral(surface, accuracy, integrand, None))
         }
         _ => integral(surface, WHOLE, accuracy, integrand),
     }
+}
+
+/// The integral of `f(jet, p − about)` over what lies below a plane of a trimmed surface that is not flat, with its error estimate.
+pub fn trimmed_below<const N: usize>(
+    surface: &Surface,
+    about: DVec3,
+    below: Below,
+    accuracy: f64,
+    f: &impl Fn(&Jet2, DVec3) -> [f64; N],
+) -> ([f64; N], [f64; N]) {
+    let at = |jet: &Jet2| f(jet, jet.p - about);
+    let size = |jet: &Jet2| f(jet, jet.p - about).map(f64::abs);
+    trimmed_integral(surface, accuracy, Integrand { value: &at, size: &size }, Some(below))
 }
 
 /// What f gives where the normal and the arm are as long as they are, along one diagonal.

@@ -9,10 +9,10 @@ use crate::network::Chain;
 use crate::surface::{Domain, Jet2, Side, Surface};
 
 /// One loop of a boundary in walking order, each chain with the fractions it is run between.
-type Boundary = Vec<(Chain, f64, f64)>;
+pub type Boundary = Vec<(Chain, f64, f64)>;
 
 /// The loops that bound a flat surface.
-fn boundary(surface: &Surface) -> Vec<Boundary> {
+pub fn boundary(surface: &Surface) -> Vec<Boundary> {
     let side = |k: usize| match surface.side(k) {
         // Sides run with ascending u or v: the walk takes the far ones backwards.
         Side::Chain { chain, from, to } if surface.domain() == Domain::Loop || k < 2 => Some((chain, from, to)),
@@ -28,7 +28,7 @@ fn boundary(surface: &Surface) -> Vec<Boundary> {
 }
 
 /// The steps between the end of each chain of a loop and the start of the next, which meet within a tolerance only.
-fn gaps(walk: &Boundary) -> impl Iterator<Item = (DVec3, DVec3)> {
+pub fn gaps(walk: &Boundary) -> impl Iterator<Item = (DVec3, DVec3)> {
     let ends = |k: usize| {
         let ((before, _, end), (after, start, _)) = (&walk[k], &walk[(k + 1) % walk.len()]);
         (before.point(*end), after.point(*start))
@@ -37,10 +37,10 @@ fn gaps(walk: &Boundary) -> impl Iterator<Item = (DVec3, DVec3)> {
 }
 
 /// A run of a boundary: its chain by number, and the fractions it is run between.
-type ChainRun = (usize, f64, f64);
+pub type ChainRun = (usize, f64, f64);
 
 /// Runs of the chains between the places at which they are less than smooth.
-fn runs(walk: &Boundary) -> Vec<ChainRun> {
+pub fn runs(walk: &Boundary) -> Vec<ChainRun> {
     let of_chain = |(k, (chain, from, to)): (usize, &(Chain, f64, f64))| {
         let mut stops = crate::surface::chain_breaks(chain);
         stops.insert(0, 0.0);

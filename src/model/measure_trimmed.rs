@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use super::measure_below::{Below, crossings};
 use super::measure_quadrature::{Integrand, Sums, add};
 use super::measure_strips::Strips;
 use crate::base::job;
@@ -61,6 +62,8 @@ struct Green<'a, const N: usize, F, S> {
     /// The rule along u.
     across: Vec<(f64, f64)>,
     strips: Option<Strips<N>>,
+    /// The plane below which alone the surface counts.
+    below: Option<Below>,
 }
 
 impl<'a, const N: usize, F, S> Green<'a, N, F, S>
@@ -68,7 +71,7 @@ where
     F: Fn(&Jet2) -> Sums<N>,
     S: Fn(&Jet2) -> Sums<N>,
 {
-    fn new(evaluator: Evaluator<'a>, integrand: Integrand<'a, F, S>) -> Self {
+    fn new(evaluator: Evaluator<'a>, integrand: Integrand<'a, F, S>, below: Option<Below>) -> Self {
         let surface = evaluator.surface();
         let outlines = surface.outlines();
         // From the middle of each loop; round a closed loop any start serves.
@@ -77,22 +80,18 @@ where
             0.5 * (low + high)
         };
         let bases: Vec<f64> = outlines.iter().zip(surface.loops()).flat_map(|(o, n)| std::iter::repeat_n(middle(o), n)).collect();
-        let way = |k: usize| match (surface.side(k), surface.border_line(k)) {
-            (_, Some((a, b))) => Some((bases[k], Way::Line(a, b))),
-            (Side::Chain { chain, from, to }, None) => Some((bases[k], Way::Chain(k, chain, from, to))),
-            _ => None,
-        };
         let mut made = Self {
             integrand,
             evaluator,
             cost: if surface.is_scattered() { DEAR } else { 0 },
-            ways: (0..surface.n_sides()).filter_map(way).collect(),
+            ways: (0..surface.n_sides()).filter_map(|k| Some((bases[k], Way::of(surface, k)?))).collect(),
             breaks: surface.breaks(),
             closed_v: surface.closed().1,
             across: gauss_legendre(ACROSS),
             strips: None,
+            below,
         };
-        if outlines.iter().flatten().all(|p| (-EPSILON..=1.0 + EPSILON).contains(&p.x)) {
+        if below.is_none() && outlines.iter().flatten().all(|p| (-EPSILON..=1.0 + EPSILON).contains(&p.x)) {
             made.strips = Strips::new((&made.breaks.0, &made.breaks.1), &made.across, &|u, v| (made.integrand.value)(&made.jet(u, v)));
         }
         made
@@ -105,8 +104,20 @@ where
         Jet2 { p, du, dv, ..Jet2::default() }
     }
 
-    /// ∫ f du between two places without a break.
+    /// ∫ f du between two places without a break, of what counts.
     fn part(&self, low: f64, high: f64, v: f64) -> Sums<N> {
+        let Some(plane) = self.below else { return self.smooth_part(low, high, v) };
+        let mut sum = [0.0; N];
+        let stops = crossings(self.evaluator.surface(), plane, (low, high), v);
+        for w in stops.windows(2) {
+            if plane.height(self.evaluator.point(0.5 * (w[0] + w[1]), v)) < 0.0 {
+                add(&mut sum, &self.smooth_part(w[0], w[1], v));
+            }
+        }
+        sum
+    }
+
+    fn smooth_part(&self, low: f64, high: f64, v: f64) -> Sums<N> {
         let mut sum = [0.0; N];
         for (x, w) in &self.across {
             job::poll();
@@ -148,7 +159,11 @@ where
     fn runs(&self) -> Vec<Run> {
         let mut runs: Vec<Run> = Vec::new();
         for (border, (_, way)) in self.ways.iter().enumerate() {
-            let stops = way.stops(&self.breaks.1, self.closed_v);
+            let mut stops = way.stops(&self.breaks.1, self.closed_v);
+            if let Some(plane) = self.below {
+                let place = |t: f64| way.at(self.evaluator, &|u, v| self.jet(u, v), t).0;
+                plane.add_stops(&mut stops, |t| self.evaluator.point(place(t).x, place(t).y));
+            }
             runs.extend(stops.windows(2).map(|w| Run { border, t: (w[0], w[1]), depth: 0 }));
         }
         runs.reverse();
@@ -182,6 +197,9 @@ where
 
     /// Whether no break lies between the places of a run: few points then tell as much as many.
     fn is_even(&self, (low, high): (DVec2, DVec2)) -> bool {
+        if self.below.is_some() {
+            return false;
+        }
         let alone = |breaks: &[f64], low: f64, high: f64| breaks.is_empty() || low >= 0.0 && high <= 1.0 && !parts(breaks, low, high);
         alone(&self.breaks.0, low.x, high.x) && alone(&self.breaks.1, low.y, high.y)
     }
@@ -190,14 +208,16 @@ where
 /// The integral of N functions of the jet over a trimmed surface, with estimated errors: `accuracy` is relative to the sums of
 /// their sizes.
 ///
-/// By Green's theorem from its borders, cut where the surface is less than analytic and halved until two rules agree.
+/// By Green's theorem from its borders, cut where the surface is less than analytic and halved until two rules agree; with a plane of
+/// what lies below it alone.
 pub fn trimmed_integral<const N: usize>(
     surface: &Surface,
     accuracy: f64,
     integrand: Integrand<impl Fn(&Jet2) -> Sums<N>, impl Fn(&Jet2) -> Sums<N>>,
+    below: Option<Below>,
 ) -> (Sums<N>, Sums<N>) {
     let prepared = surface.prepared();
-    let green = Green::new(prepared.evaluator(), integrand);
+    let green = Green::new(prepared.evaluator(), integrand, below);
     let rules = ALONG.map(|pair| pair.map(gauss_legendre));
     let runs = green.runs();
     let (mut scale, mut first) = ([0.0; N], Vec::with_capacity(runs.len()));
@@ -232,7 +252,30 @@ pub fn trimmed_integral<const N: usize>(
     (sum, error)
 }
 
+/// Places in (u, v) at which the borders of a trimmed surface cross a plane.
+pub fn border_crossings(surface: &Surface, below: Below) -> Vec<DVec2> {
+    let (evaluator, breaks, closed) = (surface.evaluator(), surface.breaks().1, surface.closed().1);
+    let mut found = Vec::new();
+    for way in (0..surface.n_sides()).filter_map(|k| Way::of(surface, k)) {
+        let place = |t: f64| way.at(evaluator, &|u, v| surface.jet(u, v), t).0;
+        let ends = way.stops(&breaks, closed);
+        let mut stops = ends.clone();
+        below.add_stops(&mut stops, |t| evaluator.point(place(t).x, place(t).y));
+        found.extend(stops.into_iter().filter(|t| !ends.contains(t)).map(place));
+    }
+    found
+}
+
 impl Way {
+    /// A border of a surface; `None` for a pole, a seam and the like.
+    fn of(surface: &Surface, k: usize) -> Option<Self> {
+        match (surface.side(k), surface.border_line(k)) {
+            (_, Some((a, b))) => Some(Self::Line(a, b)),
+            (Side::Chain { chain, from, to }, None) => Some(Self::Chain(k, chain, from, to)),
+            _ => None,
+        }
+    }
+
     /// Shares of the way at which it is less than smooth, ends included.
     fn stops(&self, breaks_v: &[f64], closed_v: bool) -> Vec<f64> {
         let mut stops = vec![0.0, 1.0];

@@ -13,7 +13,7 @@ use crate::base::math;
 use crate::base::origin::Origin;
 use crate::geometry::construct::build::{all_different, composite, enough, finite_points};
 use crate::geometry::construct::fewest::{finer, swings, turns};
-use crate::geometry::construct::spline::{open_slopes, periodic_slopes, through};
+use crate::geometry::construct::spline::{Ends, Spacing, open_slopes, periodic_slopes, through};
 use crate::geometry::curves::curve::{Curve, Shape};
 use crate::geometry::data::kind::Kind;
 use crate::geometry::shapes::least_squares::{Cubics, DEGREE, Problem};
@@ -31,10 +31,12 @@ const AROUND: usize = 4;
 pub struct Fit {
     /// How far the curve may pass from a point, model units; none: through all.
     pub tolerance: Option<f64>,
-    /// Unit direction at the first point, of a curve through all.
-    pub start: Option<DVec3>,
-    /// Unit direction at the last point.
-    pub end: Option<DVec3>,
+    /// How a curve through all leaves the first point; none: as the parabola through three points does.
+    pub start: Option<Ends>,
+    /// How it arrives at the last point.
+    pub end: Option<Ends>,
+    /// Spacing of the knots of a curve through all.
+    pub spacing: Spacing,
     /// Whether it returns to the first point.
     pub closed: bool,
     /// Turns of the data above this angle are kept as corners, radians.
@@ -58,7 +60,7 @@ pub fn fit(points: &[DVec3], how: &Fit, origin: Origin) -> Result<Curve> {
     let corners: Vec<usize> = if closed { (0..n).filter(|i| corner(*i)).collect() } else { (1..n - 1).filter(|i| corner(*i)).collect() };
     let made = |nurbs: Nurbs| Curve::new(Shape::Nurbs(Arc::new(nurbs)), Kind::Fit, origin);
     let stops: Vec<usize> = match (closed, corners.first()) {
-        (true, None) => return Ok(made(ring(points, how.tolerance))),
+        (true, None) => return Ok(made(ring(points, how))),
         (true, Some(first)) => corners.iter().copied().chain([first + n]).collect(),
         (false, _) => [0].into_iter().chain(corners).chain([n - 1]).collect(),
     };
@@ -66,7 +68,7 @@ pub fn fit(points: &[DVec3], how: &Fit, origin: Origin) -> Result<Curve> {
     let pieces = stops.windows(2).enumerate().map(|(k, ends)| {
         let part: Vec<DVec3> = (ends[0]..=ends[1]).map(at).collect();
         let tangents = [how.start.filter(|_| k == 0), how.end.filter(|_| k == last)];
-        made(run(&part, how.tolerance, tangents))
+        made(run(&part, how, tangents))
     });
     let pieces: Vec<Curve> = pieces.collect();
     Ok(composite(&pieces, origin)?.of_kind(Kind::Fit))
@@ -77,39 +79,24 @@ fn chords(points: &[DVec3]) -> Vec<f64> {
     points.windows(2).map(|p| p[0].distance(p[1])).collect()
 }
 
-/// Derivative at the first point of the parabola through the first three [de Boor 1978, chapter IV].
-pub fn bessel(points: &[DVec3], spans: &[f64]) -> DVec3 {
-    let secant = |i: usize| (points[i + 1] - points[i]) / spans[i];
-    if spans.len() < 2 {
-        return secant(0);
-    }
-    secant(0) + (secant(0) - secant(1)) * (spans[0] / (spans[0] + spans[1]))
-}
-
-/// The same at the last point.
-pub fn bessel_last(points: &[DVec3], spans: &[f64]) -> DVec3 {
-    let (points, spans): (Vec<DVec3>, Vec<f64>) = (points.iter().rev().copied().collect(), spans.iter().rev().copied().collect());
-    -bessel(&points, &spans)
-}
-
 /// Open, without corners.
-fn run(points: &[DVec3], tolerance: Option<f64>, tangents: [Option<DVec3>; 2]) -> Nurbs {
-    let spans = chords(points);
+fn run(points: &[DVec3], how: &Fit, tangents: [Option<Ends>; 2]) -> Nurbs {
     let whole = || {
-        let ends = [tangents[0].unwrap_or_else(|| bessel(points, &spans)), tangents[1].unwrap_or_else(|| bessel_last(points, &spans))];
-        through(points, &spans, &open_slopes(points, &spans, ends.map(Some)))
+        let spans = how.spacing.spans(points);
+        let [start, end] = tangents.map(|end| end.unwrap_or(Ends::Bessel));
+        through(points, &spans, &open_slopes(points, &spans, [start.first(points, &spans), end.last(points, &spans)]))
     };
-    tolerance.and_then(|tolerance| FitSearch::new(points, tolerance, false).nearest()).unwrap_or_else(whole)
+    how.tolerance.and_then(|tolerance| FitSearch::new(points, tolerance, false).nearest()).unwrap_or_else(whole)
 }
 
 /// Closed, without corners.
-fn ring(points: &[DVec3], tolerance: Option<f64>) -> Nurbs {
+fn ring(points: &[DVec3], how: &Fit) -> Nurbs {
     let around: Vec<DVec3> = points.iter().chain(points.first()).copied().collect();
     let whole = || {
-        let spans = chords(&around);
+        let spans = how.spacing.spans(&around);
         through(&around, &spans, &periodic_slopes(&around, &spans))
     };
-    tolerance.and_then(|tolerance| FitSearch::new(&around, tolerance, true).nearest()).unwrap_or_else(whole)
+    how.tolerance.and_then(|tolerance| FitSearch::new(&around, tolerance, true).nearest()).unwrap_or_else(whole)
 }
 
 /// Points to come near to; a closed row repeats the first one at its end.
@@ -143,11 +130,13 @@ impl<'a> FitSearch<'a> {
         let length = parameters[parameters.len() - 1];
         let spans = if self.closed { AROUND } else { 1 };
         let breaks = (0..=spans).map(|i| length * i as f64 / spans as f64).collect();
-        let mut found = self.best(Cubics { breaks, closed: self.closed }, &parameters)?;
+        let mut found = self.best(Cubics { breaks, closed: self.closed, degree: DEGREE }, &parameters)?;
         while !self.is_near(&found) {
             job::poll();
             let more = finer(&found.cubics.breaks, &found.parameters, &found.off);
-            let next = more.map(|breaks| Cubics { breaks, closed: self.closed }).find_map(|cubics| self.best(cubics, &found.parameters));
+            let next = more
+                .map(|breaks| Cubics { breaks, closed: self.closed, degree: DEGREE })
+                .find_map(|cubics| self.best(cubics, &found.parameters));
             found = next?;
         }
         Some(self.spared(found).curve)

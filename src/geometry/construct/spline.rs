@@ -1,4 +1,4 @@
-//! The interpolating cubic spline [de Boor 1978, chapter IV]: C2, chord-length knots.
+//! The interpolating cubic spline [de Boor 1978, chapter IV]: C2, knots by chord length, its root [Lee 1989] or uniform.
 
 use std::sync::Arc;
 
@@ -17,8 +17,76 @@ use crate::geometry::shapes::nurbs::Nurbs;
 pub enum Ends {
     /// Zero second derivative.
     Natural,
+    /// The derivative of the parabola through the three points at the end.
+    Bessel,
     /// Tangent along this direction (any length); the derivative is the unit direction × the chord parameter's speed 1.
     Clamped(DVec3),
+}
+
+/// How far apart the parameters of neighbouring points are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Spacing {
+    /// As far as the points.
+    #[default]
+    Chord,
+    /// The root of that, for points of uneven distances [Lee 1989].
+    Centripetal,
+    /// All alike.
+    Uniform,
+}
+
+impl Spacing {
+    /// The span of two points at a distance.
+    pub fn of(self, distance: f64) -> f64 {
+        match self {
+            Self::Chord => distance,
+            Self::Centripetal => distance.sqrt(),
+            Self::Uniform => 1.0,
+        }
+    }
+
+    /// The spans of a row of points, one fewer than these.
+    pub fn spans(self, points: &[DVec3]) -> Vec<f64> {
+        points.windows(2).map(|p| self.of(p[0].distance(p[1]))).collect()
+    }
+}
+
+impl Ends {
+    /// Derivative at the first point; none: natural. A direction has the speed of the first chord.
+    pub fn first(self, points: &[DVec3], spans: &[f64]) -> Option<DVec3> {
+        match self {
+            Self::Natural => None,
+            Self::Bessel => Some(bessel(points, spans)),
+            Self::Clamped(along) => Some(along.normalize_or_zero() * (points[0].distance(points[1]) / spans[0])),
+        }
+    }
+
+    /// The same at the last point.
+    pub fn last(self, points: &[DVec3], spans: &[f64]) -> Option<DVec3> {
+        match self {
+            Self::Natural => None,
+            Self::Bessel => Some(bessel_last(points, spans)),
+            Self::Clamped(along) => {
+                let n = spans.len();
+                Some(along.normalize_or_zero() * (points[n - 1].distance(points[n]) / spans[n - 1]))
+            }
+        }
+    }
+}
+
+/// Derivative at the first point of the parabola through the first three [de Boor 1978, chapter IV].
+pub fn bessel(points: &[DVec3], spans: &[f64]) -> DVec3 {
+    let secant = |i: usize| (points[i + 1] - points[i]) / spans[i];
+    if spans.len() < 2 {
+        return secant(0);
+    }
+    secant(0) + (secant(0) - secant(1)) * (spans[0] / (spans[0] + spans[1]))
+}
+
+/// The same at the last point.
+pub fn bessel_last(points: &[DVec3], spans: &[f64]) -> DVec3 {
+    let (points, spans): (Vec<DVec3>, Vec<f64>) = (points.iter().rev().copied().collect(), spans.iter().rev().copied().collect());
+    -bessel(&points, &spans)
 }
 
 /// Settings of [`spline`].
@@ -34,18 +102,26 @@ pub struct Spline {
 
 /// C2 cubic spline through points, chord-length knots.
 pub fn spline(points: &[DVec3], settings: &Spline, origin: Origin) -> Result<Curve> {
+    spaced(points, settings, Spacing::Chord, origin)
+}
+
+/// C2 cubic spline through points with knots of a spacing.
+///
+/// Fails with E402 below 2 points, 3 of a closed one; E403 for two neighbours that are one; E409 for a direction without a length.
+pub fn spaced(points: &[DVec3], settings: &Spline, spacing: Spacing, origin: Origin) -> Result<Curve> {
     finite_points(points, origin)?;
     let closed = settings.closed;
     enough(points, if closed { 3 } else { 2 }, if closed { "a closed spline" } else { "a spline" }, origin)?;
     all_different(points, closed, origin)?;
-    let end = |end: Ends, argument: &'static str| -> Result<Option<DVec3>> {
-        let Ends::Clamped(v) = end else { return Ok(None) };
-        direction(v, argument, "with a length", origin).map(Some)
+    let end = |end: Ends, argument: &'static str| -> Result<Ends> {
+        let Ends::Clamped(v) = end else { return Ok(end) };
+        direction(v, argument, "with a length", origin).map(Ends::Clamped)
     };
     let ends = [end(settings.start, "start")?, end(settings.end, "end")?];
     let around: Vec<DVec3> = points.iter().chain(points.first().filter(|_| closed)).copied().collect();
-    let spans: Vec<f64> = around.windows(2).map(|p| p[0].distance(p[1])).collect();
-    let slopes = if closed { periodic_slopes(&around, &spans) } else { open_slopes(&around, &spans, ends) };
+    let spans = spacing.spans(&around);
+    let given = || [ends[0].first(&around, &spans), ends[1].last(&around, &spans)];
+    let slopes = if closed { periodic_slopes(&around, &spans) } else { open_slopes(&around, &spans, given()) };
     let curve = through(&around, &spans, &slopes);
     Ok(Curve::new(Shape::Nurbs(Arc::new(curve)), Kind::Spline, origin))
 }

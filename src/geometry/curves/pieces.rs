@@ -290,8 +290,11 @@ fn rated_arc(arc: &EllipticArc, range: (f64, f64)) -> Vec<(f64, f64, Rates)> {
     while let Some((a, b)) = open.pop() {
         let middle = 0.5 * (a + b);
         let speed = (arc.jet(middle).d1.length() - 0.5 * (b - a) * long).max(short);
-        let rates = Rates { turn: area / (speed * speed), bend: long };
-        if 0.5 * (b - a) * rates.turn <= SPREAD {
+        // The square of the speed near the tip of an ellipse that is all but flat may be too small for a number.
+        let rates = Rates { turn: area / speed / speed, bend: long };
+        // There a piece may be no longer than its numbers are exact.
+        let can_split = a < middle && middle < b;
+        if 0.5 * (b - a) * rates.turn <= SPREAD || !can_split {
             out.push((a, b, rates));
         } else {
             open.push((middle, b));

@@ -1,4 +1,5 @@
-//! Nearest points and intersections of curves, found by bounds.
+//! Nearest points and intersections of curves, and where they pass planes, found by bounds.
 
 pub mod closest;
 pub mod intersect;
+pub mod plane;

@@ -1,49 +1,52 @@
-//! C2 cubics nearest to data in the sense of least squares: basis, normal equations and their solution.
+//! Splines of degree up to 3, with simple knots, nearest to data in the sense of least squares: basis, normal equations and their solution.
 
 use glam::DVec3;
 
 use crate::base::tolerance::EPSILON;
 
-/// Degree of what is fitted.
+/// Largest degree of what is fitted.
 pub const DEGREE: usize = 3;
 
-/// Cubic B-splines over breaks x₀ < … < xₘ, simple inside; periodic when closed.
+/// B-splines over breaks x₀ < … < xₘ, simple inside; periodic when closed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cubics {
     /// The breaks.
     pub breaks: Vec<f64>,
-    /// Whether the end joins the start, twice continuously differentiable.
+    /// Whether the end joins the start, as smoothly as breaks are crossed.
     pub closed: bool,
+    /// Degree, 1 to [`DEGREE`].
+    pub degree: usize,
 }
 
 impl Cubics {
-    /// How many poles there are: m + 3, or m when closed.
+    /// How many poles there are: m + degree, or m when closed.
     pub fn poles(&self) -> usize {
-        self.breaks.len() - 1 + if self.closed { 0 } else { DEGREE }
+        self.breaks.len() - 1 + if self.closed { 0 } else { self.degree }
     }
 
     /// All knots: clamped, or one period continued to either side.
     pub fn knots(&self) -> Vec<f64> {
-        let (x, m) = (&self.breaks, self.breaks.len() - 1);
+        let (x, m, degree) = (&self.breaks, self.breaks.len() - 1, self.degree);
         if !self.closed {
-            let ends = |t: f64| std::iter::repeat_n(t, DEGREE);
+            let ends = |t: f64| std::iter::repeat_n(t, degree);
             return ends(x[0]).chain(x.iter().copied()).chain(ends(x[m])).collect();
         }
         let period = x[m] - x[0];
         let at = |i: isize| x[i.rem_euclid(m as isize) as usize] + period * i.div_euclid(m as isize) as f64;
-        (-(DEGREE as isize)..=(m + DEGREE) as isize).map(at).collect()
+        (-(degree as isize)..=(m + degree) as isize).map(at).collect()
     }
 
-    /// The first of the four poles that reach a parameter, and their shares.
+    /// The first of the poles that reach a parameter, one more than the degree, and their shares.
     pub fn shares(&self, knots: &[f64], t: f64) -> (usize, [f64; DEGREE + 1]) {
         let m = self.breaks.len() - 1;
         let span = self.breaks[1..m].partition_point(|x| *x <= t);
         let mut n = [0.0; DEGREE + 1];
         n[0] = 1.0;
-        for p in 1..=DEGREE {
+        let degree = self.degree;
+        for p in 1..=degree {
             let mut rest = 0.0;
             for r in 0..p {
-                let (low, high) = (knots[span + DEGREE + 1 + r - p], knots[span + DEGREE + 1 + r]);
+                let (low, high) = (knots[span + degree + 1 + r - p], knots[span + degree + 1 + r]);
                 let share = n[r] / (high - low);
                 n[r] = rest + (high - t) * share;
                 rest = (t - low) * share;
@@ -62,6 +65,7 @@ pub struct Problem {
     /// Poles that are sought: all but the two ends of an open one.
     free: (usize, usize),
     poles: usize,
+    degree: usize,
     factor: Vec<Vec<f64>>,
     from: Vec<usize>,
 }
@@ -76,14 +80,14 @@ impl Problem {
         if inner < free.1 - free.0 {
             return None;
         }
-        let mut problem = Self { rows, free, poles, factor: Vec::new(), from: Vec::new() };
+        let mut problem = Self { rows, free, poles, degree: cubics.degree, factor: Vec::new(), from: Vec::new() };
         problem.gather();
         problem.decompose().then_some(problem)
     }
 
     fn places(&self, row: &(usize, [f64; DEGREE + 1])) -> impl Iterator<Item = (usize, f64)> + use<'_> {
         let (first, shares, poles) = (row.0, row.1, self.poles);
-        (0..=DEGREE).map(move |k| ((first + k) % poles, shares[k]))
+        (0..=self.degree).map(move |k| ((first + k) % poles, shares[k]))
     }
 
     /// The normal matrix below its diagonal, each row from its first entry on.
@@ -157,4 +161,54 @@ impl Problem {
         poles[low..high].copy_from_slice(&right);
         poles
     }
+
+    /// The same of many lines at once: `data` has for each parameter `width` numbers, the poles have as many each.
+    pub fn solve_all(&self, data: &[f64], width: usize) -> Vec<f64> {
+        let (low, high) = self.free;
+        let mut poles = vec![0.0; self.poles * width];
+        if low > 0 {
+            poles[..width].copy_from_slice(&data[..width]);
+            poles[high * width..].copy_from_slice(&data[data.len() - width..]);
+        }
+        let mut right = vec![0.0; (high - low) * width];
+        for (row, p) in self.rows.iter().zip(data.chunks_exact(width)) {
+            for (i, a) in self.places(row).filter(|(i, _)| (low..high).contains(i)) {
+                let to = &mut right[(i - low) * width..][..width];
+                add(to, p, a);
+                for (k, b) in self.places(row).filter(|(k, _)| !(low..high).contains(k)) {
+                    add(to, &poles[k * width..], -a * b);
+                }
+            }
+        }
+        for (i, factors) in self.factor.iter().enumerate() {
+            let (done, rest) = right.split_at_mut(i * width);
+            let (own, inner) = (&mut rest[..width], i - self.from[i]);
+            for (f, other) in factors.iter().zip(done[self.from[i] * width..].chunks_exact(width)) {
+                add(own, other, -f);
+            }
+            own.iter_mut().for_each(|x| *x /= factors[inner]);
+        }
+        for (i, factors) in self.factor.iter().enumerate().rev() {
+            let (before, rest) = right.split_at_mut(i * width);
+            let (own, inner) = (&mut rest[..width], i - self.from[i]);
+            own.iter_mut().for_each(|x| *x /= factors[inner]);
+            for (f, other) in factors.iter().zip(before[self.from[i] * width..].chunks_exact_mut(width)) {
+                add(other, own, -f);
+            }
+        }
+        poles[low * width..high * width].copy_from_slice(&right);
+        poles
+    }
+
+    /// What lines with these poles have at a parameter, by its number; `width` numbers as in [`solve_all`](Self::solve_all).
+    pub fn put(&self, parameter: usize, poles: &[f64], at: &mut [f64]) {
+        at.fill(0.0);
+        let width = at.len();
+        self.places(&self.rows[parameter]).for_each(|(i, a)| add(at, &poles[i * width..], a));
+    }
+}
+
+/// Adds a multiple.
+fn add(to: &mut [f64], from: &[f64], by: f64) {
+    to.iter_mut().zip(from).for_each(|(to, from)| *to += from * by);
 }

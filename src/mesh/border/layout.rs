@@ -290,6 +290,8 @@ pub enum Uneven {
     Beside(f64),
     /// Its map would have angles as sharp, radians.
     Sharp(f64),
+    /// Its map would take this many times the elements of its first division to keep the size.
+    Crowded(f64),
     /// One edge would stand for two, inside it and inside another face.
     Together,
 }

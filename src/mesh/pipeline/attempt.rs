@@ -118,6 +118,8 @@ struct Attempt<'a> {
     sizing: Sizing,
     demands: Vec<[RowDemand; 2]>,
     relations: Relations,
+    /// Counts of the first division of this layout.
+    first: Vec<u32>,
     /// Where borders were found too near to each other.
     narrow: Vec<Narrow>,
     /// The counts that were checked against limits last, and how the faces kept them.
@@ -147,6 +149,7 @@ pub(crate) fn attempt(input: &Input, layout: &mut Layout, size: f64, cache: Opti
         sizing,
         demands,
         relations,
+        first: Vec::new(),
         narrow: Vec::new(),
         checked: Vec::new(),
         verdicts: Vec::new(),
@@ -166,13 +169,18 @@ pub(crate) fn attempt(input: &Input, layout: &mut Layout, size: f64, cache: Opti
 }
 
 impl Attempt<'_> {
-    /// Counts of all segments and rows, and the nodes on segments.
-    fn divide(&mut self) -> Result<DividedSegments> {
+    /// Counts of all segments and rows, and the strip of each.
+    fn counts(&self) -> Result<(Vec<u32>, Vec<usize>)> {
         let (input, layout) = (self.input, &*self.layout);
         let mut unknown = self.sizing.segments(layout);
         unknown.extend(self.relations.rows());
-        let (counts, strip) = strips::solve(&unknown, &self.relations.list, MOST, input.tolerance.point)
-            .map_err(|conflict| self.relations.fault(input, layout, &self.sizing, &conflict))?;
+        strips::solve(&unknown, &self.relations.list, MOST, input.tolerance.point)
+            .map_err(|conflict| self.relations.fault(input, layout, &self.sizing, &conflict))
+    }
+
+    /// The nodes on segments of these counts.
+    fn divide(&mut self, counts: Vec<u32>, strip: Vec<usize>) -> Result<DividedSegments> {
+        let (input, layout) = (self.input, &*self.layout);
         self.relations.refuse_odd_borders(input, layout, &self.sizing, &counts)?;
         allow(refuse_counts(input, layout, &self.sizing, &self.relations.of_face, &counts)?, &mut self.charged_work);
         let fractions = |segment, count| self.sizing.fractions(segment, count);
@@ -182,8 +190,16 @@ impl Attempt<'_> {
 
     /// Divides and fills once, or up to the first reason for another division.
     fn round(&mut self) -> Result<RoundResult> {
-        let DividedSegments { counts, strip, nodes, is_settled } = self.divide()?;
         let (input, cache, job) = (self.input, self.cache, self.job);
+        let (counts, strip) = self.counts()?;
+        if self.first.is_empty() {
+            self.first.clone_from(&counts);
+        }
+        let crowded = uneven::crowded(input, self.layout, &self.relations.of_face, [&self.first, &counts]);
+        if !crowded.is_empty() {
+            return Ok(RoundResult::Again(Retry::UnevenBorders(crowded), counts));
+        }
+        let DividedSegments { counts, strip, nodes, is_settled } = self.divide(counts, strip)?;
         let uneven = uneven::find(self.layout, &nodes, input.tolerance.point, &self.sizing);
         if !uneven.is_empty() {
             return Ok(RoundResult::Again(Retry::UnevenBorders(uneven), counts));
@@ -301,7 +317,7 @@ impl Attempt<'_> {
         }
         (self.sizing, self.demands, self.relations) = begin(self.input, self.layout, self.size, self.cache, self.job)?;
         self.narrow.clear();
-        (self.checked, self.shortened) = (Vec::new(), Vec::new());
+        (self.first, self.checked, self.shortened) = (Vec::new(), Vec::new(), Vec::new());
         Ok(())
     }
 }

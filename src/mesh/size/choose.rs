@@ -19,6 +19,9 @@ pub fn choose(input: &Input, layout: &mut Layout) -> Result<()> {
             face.uneven.map(|why| match why {
                 Uneven::Row(step) => format!("with a piece of border of {}, as narrow as a row would be", short(step)),
                 Uneven::Beside(step) => format!("beside a free one that needs steps of {}, which rows do not follow", short(step)),
+                Uneven::Crowded(times) => {
+                    format!("whose map is nearly one point along a part of a side: {} times the elements", short(times))
+                }
                 Uneven::Together => "whose map would coincide with that of another face".to_owned(),
                 Uneven::Sharp(angle) => format!("whose map would have angles of {}°", short(angle.to_degrees())),
             })

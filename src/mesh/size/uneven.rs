@@ -1,13 +1,18 @@
 //! Mapped faces that are better meshed freely: where a short piece of border would run through the whole face as a row of that
-//! width, and where their even rows meet borders of a free face that have, or need, much shorter steps.
+//! width, where their even rows meet borders of a free face that have, or need, much shorter steps, and where rows crowd.
 
 use crate::mesh::border::layout::{Face, FaceSide, Layout, Uneven};
 use crate::mesh::border::nodes::Nodes;
+use crate::mesh::request::input::Input;
 use crate::mesh::request::methods::{Elements, Method};
 use crate::mesh::size::sizing::Sizing;
 
 /// A step next to one shorter than this share of it makes angles below 7°.
 const MIN_STEP_RATIO: f64 = 0.125;
+/// Rows crowd where their cells are this many times those of the first division: a part of a side of the map is nearly one point.
+const CROWDED: f64 = 20.0;
+/// Fewer cells do not crowd.
+const FEW_CELLS: f64 = 10_000.0;
 
 /// Faces of triangles, mapped because no method is written, that are better meshed freely. What is written stays.
 pub fn find(layout: &Layout, nodes: &Nodes, near: f64, sizing: &Sizing) -> Vec<(usize, Uneven)> {
@@ -24,6 +29,26 @@ pub fn find(layout: &Layout, nodes: &Nodes, near: f64, sizing: &Sizing) -> Vec<(
         row(face, nodes, near).map(Uneven::Row).or(beside.map(Uneven::Beside))
     };
     layout.faces.iter().enumerate().filter_map(|(f, face)| Some((f, of(face)?))).collect()
+}
+
+/// Faces mapped because no method is written of which rows have to be many times those of the first division to keep the size, where
+/// only sizes limit their elements. Faces that keep their map after a free mesh had smaller angles are among them: the map has so many cells only now.
+///
+/// `rows_of_face` are the rows of each face, as in [`crate::mesh::divide::relations::Relations::of_face`].
+pub fn crowded(input: &Input, layout: &Layout, rows_of_face: &[Vec<usize>], [first, now]: [&[u32]; 2]) -> Vec<(usize, Uneven)> {
+    let settings = &input.plan.settings;
+    if settings.chord_error.is_some() || settings.angle_error.is_some() {
+        return Vec::new();
+    }
+    let of = |(f, (face, rows)): (usize, (&Face, &Vec<usize>))| {
+        if face.free || face.method != Method::Auto || face.is_triangle() {
+            return None;
+        }
+        let cells = |counts: &[u32]| f64::from(counts[rows[0]]) * f64::from(counts[rows[1]]);
+        let (few, many) = (cells(first), cells(now));
+        (many > FEW_CELLS && many > CROWDED * few).then_some((f, Uneven::Crowded(many / few)))
+    };
+    layout.faces.iter().zip(rows_of_face).enumerate().filter_map(of).collect()
 }
 
 /// Whether all steps of a side are written: rows are what is meant.

@@ -1,8 +1,11 @@
 //! The fault for a face with a defect: by the cause where one is found, else as a defect of the mesher.
 
+use glam::DVec3;
+
 use crate::base::fault::Fault;
+use crate::base::math;
 use crate::base::tolerance::TOLD_APART;
-use crate::mesh::border::layout::{Face, middle};
+use crate::mesh::border::layout::{Face, Layout, middle};
 use crate::mesh::chart::face_input::FaceInput;
 use crate::mesh::data::face_mesh::FaceMesh;
 use crate::mesh::data::mesh::Mesh;
@@ -12,6 +15,11 @@ use crate::mesh::request::methods::Method;
 use crate::mesh::verify::defect::Defect;
 use crate::mesh::verify::face_border::LayoutBorder;
 use crate::surface::faults::CutFault;
+
+/// Chords of a piece of a border that is looked at for turns.
+const CHORDS: usize = 4096;
+/// What turns by more goes back, radians.
+const BACK: f64 = 2.0;
 
 /// E999 for a face with a defect; E720 where it closes on itself or its border turns back along itself
 /// more narrowly than its size.
@@ -34,6 +42,9 @@ pub(crate) fn fault(face_input: &FaceInput, face: &Face, face_mesh: &FaceMesh, d
     if let Some(fault) = crowded.or_else(|| short(face_input, face, mesh)).or_else(|| folded(input, face, method)) {
         return fault;
     }
+    if let Some(at) = turned_back(layout, face) {
+        return ElementFault::ClosesTooNear { surface, method, at, close: Close::Turn }.into();
+    }
     ElementFault::Unsound {
         mesh: (input.plan.origin, input.plan.name.clone()),
         surface,
@@ -43,6 +54,21 @@ pub(crate) fn fault(face_input: &FaceInput, face: &Face, face_mesh: &FaceMesh, d
         at,
     }
     .into()
+}
+
+/// Where a piece of the border of a free face turns back along itself, as a spline that swings about points in one place does: by chords of
+/// a share of the piece each.
+fn turned_back(layout: &Layout, face: &Face) -> Option<DVec3> {
+    if !face.free {
+        return None;
+    }
+    let fraction = |k: usize| k as f64 / CHORDS as f64;
+    let fractions: Vec<f64> = (0..=CHORDS).map(fraction).collect();
+    face.sides.iter().flat_map(|side| &side.uses).find_map(|used| {
+        let points = layout.points_along(used.segment, &fractions);
+        let turns = |w: &&[DVec3]| math::angle_between(w[1] - w[0], w[2] - w[1]) > BACK;
+        points.windows(3).find(turns).map(|w| w[1])
+    })
 }
 
 /// E718 where the surface folds over or has no normal somewhere inside.

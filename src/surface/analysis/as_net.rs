@@ -52,6 +52,11 @@ pub enum Off {
 }
 
 impl Off {
+    /// Whether the form is the surface itself.
+    pub fn is_exact(self) -> bool {
+        matches!(self, Self::Exact)
+    }
+
     /// Model units.
     pub fn distance(self) -> f64 {
         match self {

@@ -54,7 +54,7 @@ pub struct NetCurve {
 impl Surface {
     fn blend(&self) -> Option<&Blend> {
         use SurfaceKind as K;
-        let of_curves = matches!(self.kind(), K::Sweep | K::Gordon | K::Skin | K::Coons | K::Transfinite);
+        let of_curves = matches!(self.kind(), K::Sweep | K::Gordon | K::Skin | K::Coons | K::Transfinite | K::Hermite);
         if let (Shape::Blend(blend), true) = (&self.parts().shape, of_curves) { Some(blend) } else { None }
     }
 

@@ -18,8 +18,9 @@ use crate::surface::rails::rail::Rail;
 use crate::surface::rails::reparam::{Map, Reparam};
 use crate::surface::rails::side::{Border, Side};
 use crate::surface::shapes::blend::Blend;
+use crate::surface::shapes::rule::Rule;
 use crate::surface::shapes::trilateral::Trilateral;
-use crate::surface::shapes::weights::{BlendAxis, Rule};
+use crate::surface::shapes::weights::BlendAxis;
 
 /// How curves are blended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,6 +36,8 @@ pub enum BlendMethod {
     Lagrange,
     /// Cubic splines through all curves, C2 in the parameters (`gordon`).
     Gordon,
+    /// As cubic, with twists at the nodes to be given (`hermite`).
+    Hermite,
 }
 
 impl BlendMethod {
@@ -42,6 +45,7 @@ impl BlendMethod {
         match self {
             Self::Lagrange => SurfaceKind::Transfinite,
             Self::Gordon => SurfaceKind::Gordon,
+            Self::Hermite => SurfaceKind::Hermite,
             _ => SurfaceKind::Coons,
         }
     }
@@ -51,7 +55,7 @@ impl BlendMethod {
         match self {
             Self::Linear => Rule::Linear,
             Self::Coons if one_cell => Rule::Linear,
-            Self::Coons | Self::Cubic => Rule::Cubic,
+            Self::Coons | Self::Cubic | Self::Hermite => Rule::Cubic,
             Self::Lagrange => Rule::Lagrange,
             Self::Gordon if closed => Rule::Periodic,
             Self::Gordon => Rule::Spline,
@@ -89,6 +93,15 @@ pub fn build(grid: &Grid, settings: &CoonsSettings, tolerance: &Tolerance) -> Re
         return trilateral(grid, settings, tolerance);
     }
     let mut notes = Vec::new();
+    let (blend, made) = gridded(grid, settings, tolerance, &mut notes)?;
+    if settings.method == BlendMethod::Lagrange {
+        notes.extend(oscillation(&blend, settings.origin));
+    }
+    Ok((finish(blend, made, tolerance, &mut notes), notes))
+}
+
+/// The blend over a grid of two families and what its surface has beside it, with notes (N609).
+pub(super) fn gridded(grid: &Grid, settings: &CoonsSettings, tolerance: &Tolerance, notes: &mut Vec<Fault>) -> Result<(Blend, Made)> {
     let flow = grid.flow;
     // A curve of an exact net begins at its crossing, not at an end within the tolerance of it.
     let snap = if settings.method == BlendMethod::Gordon { tolerance.rounding } else { tolerance.point };
@@ -97,13 +110,13 @@ pub fn build(grid: &Grid, settings: &CoonsSettings, tolerance: &Tolerance) -> Re
         grid,
         GridFamily { members: &flow.along_u, across: &flow.along_v, closed: flow.closed_u, poles: (false, false), snap },
         tolerance,
-        &mut notes,
+        notes,
     )?;
     let along_v = prepare(
         grid,
         GridFamily { members: &flow.along_v, across: &flow.along_u, closed: flow.closed_v, poles: ends_v, snap },
         tolerance,
-        &mut notes,
+        notes,
     )?;
     let nodes_u = match along_u.is_empty() {
         // Meridians alone: nothing says how far apart they are.
@@ -136,9 +149,6 @@ pub fn build(grid: &Grid, settings: &CoonsSettings, tolerance: &Tolerance) -> Re
         rails_u.push(Rail::Point(p));
     }
     let blend = Blend::new(BlendAxis::new(nodes_u, rules.0), BlendAxis::new(nodes_v, rules.1), rails_v, rails_u);
-    if settings.method == BlendMethod::Lagrange {
-        notes.extend(oscillation(&blend, settings.origin));
-    }
     let made = Made {
         origin: settings.origin,
         kind: settings.method.kind(),
@@ -146,7 +156,7 @@ pub fn build(grid: &Grid, settings: &CoonsSettings, tolerance: &Tolerance) -> Re
         closed: (flow.closed_u, flow.closed_v),
         chains: in_order(&along_u, &along_v),
     };
-    Ok((finish(blend, made, tolerance, &mut notes), notes))
+    Ok((blend, made))
 }
 
 /// What a surface over a grid has beside its blend.

@@ -25,7 +25,8 @@ use crate::surface::data::kind::SurfaceKind;
 use crate::surface::data::one_sided::OneSided;
 use crate::surface::rails::rail::Rail;
 use crate::surface::shapes::blend::Blend;
-use crate::surface::shapes::weights::{BlendAxis, Rule};
+use crate::surface::shapes::rule::Rule;
+use crate::surface::shapes::weights::BlendAxis;
 
 /// A complete net of curves in common parameters.
 #[derive(Clone, Debug)]

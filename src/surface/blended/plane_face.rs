@@ -20,8 +20,9 @@ use crate::surface::rails::rail::Rail;
 use crate::surface::rails::reparam::Map;
 use crate::surface::rails::side::{Border, Side};
 use crate::surface::shapes::blend::Blend;
+use crate::surface::shapes::rule::Rule;
 use crate::surface::shapes::trilateral::Trilateral;
-use crate::surface::shapes::weights::{BlendAxis, Rule};
+use crate::surface::shapes::weights::BlendAxis;
 
 /// The flat face inside curves that close, in any order and direction; the first curve runs along u.
 ///

@@ -15,7 +15,8 @@ use crate::surface::rails::reparam::Map;
 use crate::surface::rails::ring::Ring;
 use crate::surface::rails::side::{Border, Side};
 use crate::surface::shapes::blend::Blend;
-use crate::surface::shapes::weights::{BlendAxis, Rule};
+use crate::surface::shapes::rule::Rule;
+use crate::surface::shapes::weights::BlendAxis;
 
 /// The ruled surface S(u, v) = (1 − v) a(u) + v b(u), u the arc-length fraction of both.
 ///

@@ -14,7 +14,8 @@ use crate::surface::blended::skin_ends::Spanned;
 use crate::surface::data::one_sided::OneSided;
 use crate::surface::rails::mixed::{Mixed, Part};
 use crate::surface::rails::rail::Rail;
-use crate::surface::shapes::weights::{BlendAxis, Rule};
+use crate::surface::shapes::rule::Rule;
+use crate::surface::shapes::weights::BlendAxis;
 
 /// Places along each section at which a fit is measured.
 const PLACES: usize = 65;

@@ -8,6 +8,7 @@ use crate::surface::faults::Construction;
 pub enum SurfaceKind {
     Coons,
     Transfinite,
+    Hermite,
     Ruled,
     Plane,
     Extrude,
@@ -42,6 +43,7 @@ impl SurfaceKind {
         match self {
             Self::Coons => "coons",
             Self::Transfinite => "transfinite",
+            Self::Hermite => "hermite",
             Self::Ruled => "ruled",
             Self::Plane => "plane",
             Self::Extrude => "extrude",

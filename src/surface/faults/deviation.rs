@@ -1,11 +1,11 @@
-//! How far a surface is from what it is made on.
+//! How far a surface or a spline is from what it is made on.
 
 use glam::DVec3;
 
 use crate::base::fault::{Describe, Report, Say, codes};
 use crate::base::origin::Origin;
 
-/// N677: a surface deviates within what is allowed. Lengths and points are in model units.
+/// N677: a surface deviates within what is allowed; E654: a border does by more. Lengths and points are in model units.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DeviationFault {
     /// N677: the curves of a net miss each other within what is allowed.
@@ -49,10 +49,23 @@ pub enum DeviationFault {
         /// Whether that is proved; else it is the most at sampled places.
         proved: bool,
     },
+    /// E654: a spline through as many points as may be leaves its curve.
+    BorderNotResolved {
+        /// The curve.
+        border: Origin,
+        /// How far the spline is off.
+        off: f64,
+        /// Where, on the curve.
+        at: DVec3,
+        /// How far it may be.
+        within: f64,
+        /// The points.
+        points: usize,
+    },
 }
 
 impl Describe for DeviationFault {
-    codes! { Gap "N677", Smoothed "N677", AsNet "N677" }
+    codes! { Gap "N677", Smoothed "N677", AsNet "N677", BorderNotResolved "E654" }
 
     fn describe(&self, say: &dyn Say) -> Report {
         match self {
@@ -88,6 +101,15 @@ impl Describe for DeviationFault {
                 format!("{net} approximates {surface} within {off}{sampled}")
             })
             .at(*net, "a B-spline approximation"),
+            Self::BorderNotResolved { border, off, at, within, points } => Report::new(format!(
+                "a spline through {points} points leaves {} by {} at {}",
+                say.quoted(*border, "the border"),
+                say.length(*off),
+                say.point(*at)
+            ))
+            .at(*border, "this curve")
+            .note(format!("allowed are {}", say.length(*within)))
+            .help("allow more with `within:`, or split the curve where it bends sharply"),
         }
     }
 }

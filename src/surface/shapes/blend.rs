@@ -7,6 +7,10 @@
 //! `F_i` run along v at `u_i`, `G_j` along u at `v_j`, `P_ij` are their nodes. Composite Coons, Lagrange and Gordon
 //! surfaces differ in the functions a and b alone. Without curves along v the sum is a ruled surface. Where the rule is a
 //! spline the slopes of curves and nodes across a direction are terms of the sum like the curves and nodes themselves.
+//!
+//! A Hermite blended Coons patch with twists x_ij [Coons 1967; Farin 2002, chapter 22] is such a sum too: derivatives across the curves are the
+//! cubics of their values and twists at the nodes, h₀, h₃ for values and h₁, h₂ for slopes, so in r₁ + r₂ − r₃ they cancel and leave
+//! Σ h₀ F + Σ h₀ G − ΣΣ h₀ h₀ P + ΣΣ h₁ h₁ x. Slopes are terms without curves, and a twist is the negative P_ij of two slopes.
 
 use glam::DVec3;
 
@@ -18,6 +22,7 @@ use crate::surface::data::jet::Jet2;
 use crate::surface::data::one_sided::OneSided;
 use crate::surface::rails::rail::Rail;
 use crate::surface::shapes::blend_terms::{active_lines, with_slopes};
+use crate::surface::shapes::rule::Rule;
 use crate::surface::shapes::weights::{BlendAxis, Weights};
 
 /// A surface blended from a grid of curves.
@@ -51,6 +56,29 @@ impl Blend {
         }
         let corners = with_slopes(&corners, along_v.len(), &u, &v);
         Self { u, v, along_v, along_u, corners }
+    }
+
+    /// The same with given mixed derivatives ∂uv at the nodes, `i` fastest, by [`Rule::Hermite`] in both directions. Curves stay what they are.
+    pub fn with_twists(mut self, twists: &[DVec3]) -> Self {
+        let nodes = self.nodes();
+        let (n, m) = (self.along_v.len(), self.along_u.len());
+        self.u = BlendAxis::new(self.u.nodes, Rule::Hermite);
+        self.v = BlendAxis::new(self.v.nodes, Rule::Hermite);
+        self.corners = with_slopes(&nodes, n, &self.u, &self.v);
+        let width = self.u.terms();
+        for (row, twists) in self.corners.chunks_exact_mut(width).skip(m).zip(twists.chunks_exact(n)) {
+            row[n..].iter_mut().zip(twists).for_each(|(corner, twist)| *corner = -*twist);
+        }
+        self
+    }
+
+    /// ∂uv at the nodes, `i` fastest; none unless the rule is [`Rule::Hermite`].
+    pub fn twists(&self) -> Vec<DVec3> {
+        if self.u.rule != Rule::Hermite {
+            return Vec::new();
+        }
+        let (n, m) = (self.along_v.len(), self.along_u.len());
+        (0..m).flat_map(|j| (0..n).map(move |i| (n + i, m + j))).map(|(i, j)| -self.corner(i, j)).collect()
     }
 
     /// Parameters and rule across u (first) and v (second).
@@ -154,20 +182,26 @@ impl Blend {
         let box3 = rails.fold(Box3::of(self.nodes()), |all, rail| all.union(rail.hull()));
         let (a, b) = (self.u.lebesgue(), self.v.lebesgue());
         let reach = if self.along_v.is_empty() { b } else { a + b + a * b };
-        let (center, half) = (box3.center(), (box3.max - box3.min) * (0.5 * reach));
+        // In a cell of width h the sizes of both cubics of slopes sum to h t (1 − t), h / 4 at most.
+        let widest = |axis: &BlendAxis| axis.nodes.windows(2).map(|x| x[1] - x[0]).fold(0.0, f64::max);
+        let twisted =
+            self.twists().iter().fold(DVec3::ZERO, |most, twist| most.max(twist.abs())) * (widest(&self.u) * widest(&self.v) / 16.0);
+        let (center, half) = (box3.center(), (box3.max - box3.min) * (0.5 * reach) + twisted);
         Box3 { min: center - half, max: center + half }
     }
 
     /// Carried by a motion.
     pub fn moved(&self, motion: &Motion) -> Self {
         let nodes: Vec<DVec3> = self.nodes().iter().map(|p| motion.point(*p)).collect();
-        Self {
+        let moved = Self {
             u: self.u.clone(),
             v: self.v.clone(),
             along_v: self.along_v.iter().map(|r| r.moved(motion)).collect(),
             along_u: self.along_u.iter().map(|r| r.moved(motion)).collect(),
             corners: with_slopes(&nodes, self.along_v.len(), &self.u, &self.v),
-        }
+        };
+        let twists: Vec<DVec3> = self.twists().iter().map(|twist| motion.vector(*twist)).collect();
+        if twists.is_empty() { moved } else { moved.with_twists(&twists) }
     }
 }
 
@@ -201,7 +235,6 @@ impl BlendSum {
 mod tests {
     use super::*;
     use crate::base::math;
-    use crate::surface::shapes::weights::Rule;
 
     type Formula = fn(f64, f64) -> DVec3;
 

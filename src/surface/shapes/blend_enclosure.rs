@@ -7,7 +7,8 @@ use std::sync::OnceLock;
 
 use glam::DVec3;
 
-use crate::base::range::Interval;
+use crate::base::range::{Interval, Interval3};
+use crate::geometry::Jet;
 use crate::surface::data::enclosure::Enclosure;
 use crate::surface::data::jet::Jet2;
 use crate::surface::data::one_sided::OneSided;
@@ -67,6 +68,9 @@ impl Blend {
         let Some(slope) = term.checked_sub(rails.len()) else { return rail(term) };
         let across = if along_u { self.axes().1 } else { self.axes().0 };
         let felt = || across.slopes()[slope].iter().enumerate().filter(|(_, by)| **by != 0.0);
+        if felt().next().is_none() {
+            return Line::new(0.5 * (strip.ends.1 - strip.ends.0), Jet::default(), None, Interval3::default());
+        }
         let sum = || Line::sum(felt().map(|(k, by)| (*by, rail(k))));
         *strip.slopes[slope].get_or_init(sum)
     }

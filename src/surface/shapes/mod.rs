@@ -15,6 +15,7 @@ pub mod net_enclosure;
 pub mod nurbs;
 mod nurbs_grid;
 pub mod powers;
+pub mod rule;
 pub mod speed_map;
 pub mod sweep;
 pub mod third_derivative_bounds;

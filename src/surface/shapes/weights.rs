@@ -2,43 +2,13 @@
 //!
 //! A blend is a sum of functions of one parameter times *terms*. The first terms are the curves at the nodes; where the
 //! rule is a spline there follow as many slopes across the nodes, which are fixed sums of the curves. So few functions
-//! differ from 0 at any parameter, whatever the number of curves.
+//! differ from 0 at any parameter, whatever the number of curves. Hermite blends have the same functions, and slopes of no curves.
 
 use crate::base::range::Interval;
 use crate::base::tolerance::EPSILON;
 use crate::surface::data::one_sided::OneSided;
 use crate::surface::shapes::cardinal;
-
-/// How curves are blended across one direction.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Rule {
-    /// 1 − ξ and ξ between the two neighbours [Coons 1967]: local, continuous.
-    Linear,
-    /// 3ξ² − 2ξ³ between the two neighbours [Koh & Park 1990, eq. 4.3–4.5]: C1, local.
-    Cubic,
-    /// The Lagrange polynomial through all of them [Koh & Park 1990, eq. 4.1]; with two curves linear.
-    Lagrange,
-    /// Cubic splines through all of them, C2, not a knot at the ends (Gordon).
-    Spline,
-    /// Cubic splines through all of them, C2 across the seam too: the last curve is the first one.
-    Periodic,
-}
-
-impl Rule {
-    /// Its word in the language; none for blends through all curves.
-    pub fn name(self) -> Option<&'static str> {
-        match self {
-            Self::Linear => Some("linear"),
-            Self::Cubic => Some("cubic"),
-            Self::Lagrange | Self::Spline | Self::Periodic => None,
-        }
-    }
-
-    /// Whether terms are curves and slopes.
-    fn is_spline(self) -> bool {
-        matches!(self, Self::Spline | Self::Periodic)
-    }
-}
+use crate::surface::shapes::rule::Rule;
 
 /// Parameters of the curves across one direction, ascending from 0 to 1, and the rule between them.
 #[derive(Clone, Debug)]
@@ -47,11 +17,10 @@ pub struct BlendAxis {
     pub nodes: Vec<f64>,
     /// The rule.
     pub rule: Rule,
-    /// Of splines: slopes at the nodes as sums of values at the nodes, in rows.
+    /// Of splines and Hermite blends: slopes at the nodes as sums of values at the nodes, in rows; zero of Hermite blends.
     slopes: Vec<Vec<f64>>,
 }
 
-crate::content_of_word!(Rule);
 crate::content!(BlendAxis { nodes, rule } but { slopes });
 
 /// Terms that take part at one parameter, each with value, first and second derivative of its function.
@@ -109,7 +78,11 @@ impl Weights {
 impl BlendAxis {
     /// An axis with what its rule needs to be evaluated.
     pub fn new(nodes: Vec<f64>, rule: Rule) -> Self {
-        let mut slopes = if rule.is_spline() { cardinal::slopes(&nodes, rule == Rule::Periodic) } else { Vec::new() };
+        let mut slopes = match rule {
+            Rule::Hermite => vec![vec![0.0; nodes.len()]; nodes.len()],
+            _ if rule.has_slopes() => cardinal::slopes(&nodes, rule == Rule::Periodic),
+            _ => Vec::new(),
+        };
         for row in &mut slopes {
             let least = row.iter().fold(0.0, |most: f64, x| most.max(x.abs())) * UNFELT;
             row.iter_mut().filter(|x| x.abs() <= least).for_each(|x| *x = 0.0);
@@ -122,7 +95,7 @@ impl BlendAxis {
         match self.rule {
             Rule::Lagrange => self.nodes.len(),
             Rule::Linear | Rule::Cubic => 2,
-            Rule::Spline | Rule::Periodic => 4,
+            Rule::Spline | Rule::Periodic | Rule::Hermite => 4,
         }
     }
 
@@ -136,14 +109,14 @@ impl BlendAxis {
         self.nodes.len() + self.slopes.len()
     }
 
-    /// Slopes at the nodes as sums of values at the nodes, in rows; empty unless the rule is a spline.
+    /// Slopes at the nodes as sums of values at the nodes, in rows; empty unless slopes are terms.
     pub fn slopes(&self) -> &[Vec<f64>] {
         &self.slopes
     }
 
     /// Of the active blending values how many sum to 1 at every parameter: they come first; slopes follow.
     pub fn shares(&self) -> usize {
-        if self.rule.is_spline() { 2 } else { self.active() }
+        if self.rule.has_slopes() { 2 } else { self.active() }
     }
 
     /// The blending value of the curve at node `i`, all terms counted.
@@ -192,7 +165,7 @@ impl BlendAxis {
                 weights.set(near, [1.0 - value, -d1, -d2]);
                 weights
             }
-            Rule::Spline | Rule::Periodic => self.hermite(x, self.cell(x, side)),
+            Rule::Spline | Rule::Periodic | Rule::Hermite => self.hermite(x, self.cell(x, side)),
             Rule::Lagrange => {
                 let n = self.nodes.len();
                 let mut weights = Weights::room(0, n);
@@ -262,7 +235,7 @@ impl BlendAxis {
         let third = |k: usize| match self.rule {
             Rule::Linear => Interval::at(0.0),
             Rule::Cubic => Interval::at(if k == 1 { -cube().0 } else { cube().0 }),
-            Rule::Spline | Rule::Periodic => Interval::at([cube().0, -cube().0, cube().1, cube().1][k]),
+            Rule::Spline | Rule::Periodic | Rule::Hermite => Interval::at([cube().0, -cube().0, cube().1, cube().1][k]),
             Rule::Lagrange => self.lagrange_third(k, Interval { low: x0, high: x1 }),
         };
         (0..at.values().len()).map(third).collect()
@@ -287,7 +260,7 @@ impl BlendAxis {
     /// Between two nodes the polynomial's sum has a single maximum, so golden sections find it. In a cell of width h a spline's
     /// sum is at most 1 + 4h/27 (Σ|D_k| + Σ|D_k+1|), 4/27 the largest value of t (1 − t)².
     pub fn lebesgue(&self) -> f64 {
-        if self.rule.is_spline() {
+        if self.rule.has_slopes() {
             let sums: Vec<f64> = self.slopes.iter().map(|row| row.iter().map(|d| d.abs()).sum()).collect();
             let cell = |k: usize| 1.0 + 4.0 / 27.0 * (self.nodes[k + 1] - self.nodes[k]) * (sums[k] + sums[k + 1]);
             return (0..self.nodes.len() - 1).map(cell).fold(1.0, f64::max);
@@ -320,7 +293,7 @@ mod tests {
 
     #[test]
     fn weights_sum_to_one_and_are_exact_at_nodes() {
-        for rule in [Rule::Linear, Rule::Cubic, Rule::Lagrange, Rule::Spline, Rule::Periodic] {
+        for rule in [Rule::Linear, Rule::Cubic, Rule::Lagrange, Rule::Spline, Rule::Periodic, Rule::Hermite] {
             let axis = BlendAxis::new(vec![0.0, 0.15, 0.4, 0.55, 0.6, 0.83, 1.0], rule);
             for i in 0..=100 {
                 for side in [OneSided::After, OneSided::Before] {
@@ -341,7 +314,7 @@ mod tests {
 
     #[test]
     fn derivatives_are_difference_quotients() {
-        for rule in [Rule::Linear, Rule::Cubic, Rule::Lagrange, Rule::Spline, Rule::Periodic] {
+        for rule in [Rule::Linear, Rule::Cubic, Rule::Lagrange, Rule::Spline, Rule::Periodic, Rule::Hermite] {
             let axis = BlendAxis::new(vec![0.0, 0.2, 0.5, 1.0], rule);
             let h = 1e-5;
             for x in [0.05, 0.13, 0.3, 0.47, 0.7, 0.9] {

@@ -20,7 +20,8 @@ use crate::surface::rails::line::Line;
 use crate::surface::rails::rail::Rail;
 use crate::surface::shapes::blend::Blend;
 use crate::surface::shapes::nurbs::NurbsSurface;
-use crate::surface::shapes::weights::{BlendAxis, Rule};
+use crate::surface::shapes::rule::Rule;
+use crate::surface::shapes::weights::BlendAxis;
 
 /// Parts of a cell over which blending functions are bounded.
 const PARTS: usize = 16;
@@ -89,6 +90,17 @@ fn made(blend: &Blend, within: f64) -> Result<NetForm, (f64, f64)> {
             net.push((0..rest.len()).fold(along, |p, i| p + rest[i][l] * a[i][k]).extend(1.0));
         }
     }
+    let twists = blend.twists();
+    if twists.iter().any(|twist| *twist != DVec3::ZERO) {
+        let (a, b) = (slopes(u, &along_u.breaks), slopes(v, &along_v.breaks));
+        for (l, row) in net.chunks_exact_mut(counts.0).enumerate() {
+            // Of each i along v what its twists are at this row.
+            let row_twists: Vec<DVec3> = (0..a.len()).map(|i| (0..b.len()).map(|j| twists[j * a.len() + i] * b[j][l]).sum()).collect();
+            for (k, pole) in row.iter_mut().enumerate() {
+                *pole += (0..a.len()).map(|i| row_twists[i] * a[i][k]).sum::<DVec3>().extend(0.0);
+            }
+        }
+    }
     let knots = (along_u.breaks.vector(), along_v.breaks.vector());
     Ok(NetForm {
         net: NurbsSurface { degree: (along_u.breaks.degree, along_v.breaks.degree), knots, poles: net, counts },
@@ -129,7 +141,7 @@ fn lines(axis: &BlendAxis, degree: usize) -> Breaks {
     let mut breaks = Breaks::none(degree);
     let smooth = match axis.rule {
         Rule::Spline | Rule::Periodic => 2,
-        Rule::Cubic => 1,
+        Rule::Cubic | Rule::Hermite => 1,
         Rule::Linear => 0,
         Rule::Lagrange => return breaks,
     };
@@ -160,10 +172,24 @@ fn reach(axis: &BlendAxis) -> f64 {
 
 /// Control values of the blending function of each node over breaks that hold the lines of the axis.
 fn cardinals(axis: &BlendAxis, breaks: &Breaks) -> Vec<Vec<f64>> {
+    controls(axis.nodes.len(), breaks, |x, side| whole(axis, x, side))
+}
+
+/// The same of the functions of the slopes at the nodes.
+fn slopes(axis: &BlendAxis, breaks: &Breaks) -> Vec<Vec<f64>> {
     let n = axis.nodes.len();
+    controls(n, breaks, |x, side| {
+        let mut all = vec![[0.0; 3]; n];
+        axis.weights(x, side).iter().filter(|(term, _)| *term >= n).for_each(|(term, w)| all[term - n] = *w);
+        all
+    })
+}
+
+/// Control values over breaks of `n` functions, known by their values and derivatives.
+fn controls(n: usize, breaks: &Breaks, of: impl Fn(f64, OneSided) -> Vec<[f64; 3]>) -> Vec<Vec<f64>> {
     let mut all = vec![Hermite { value: Vec::new(), slope: Vec::new(), bend: Vec::new() }; n];
     for x in &breaks.at {
-        let (before, after) = (whole(axis, *x, OneSided::Before), whole(axis, *x, OneSided::After));
+        let (before, after) = (of(*x, OneSided::Before), of(*x, OneSided::After));
         for (own, (before, after)) in all.iter_mut().zip(before.into_iter().zip(after)) {
             own.value.push(after[0]);
             own.slope.push([before[1], after[1]]);
