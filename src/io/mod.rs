@@ -2,7 +2,7 @@
 //!
 //! - [`files`]: how files are reached, written in blocks, and named; what formats lose
 //! - [`tables`]: tables (csv, dat, txt) and JSON
-//! - [`mesh_files`]: mesh files: OBJ and STL read; STL, OBJ, PLY, VTU, MSH, INP and BDF written
+//! - [`mesh_files`]: mesh files: OBJ and STL read; STL, OBJ, PLY, VTU, MSH, INP, BDF, GLB and 3MF written
 //! - [`curve_files`]: curves as polylines: csv, SVG and OBJ
 //! - [`formats`]: which format the ending of a path chooses
 //! - [`cad`]: what CAD formats have in common: surfaces, trimmed faces, bodies and parts

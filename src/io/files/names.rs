@@ -11,6 +11,8 @@ use crate::mesh::Mesh;
 pub enum Naming {
     /// Any text without blanks and quotes.
     Free,
+    /// Any text without control characters, as strings of JSON and XML hold it (GLB, 3MF).
+    Quoted,
     /// ASCII letters, digits and `_`, a letter first, at most 80, case ignored (INP, BDF); other scripts in Latin letters.
     Strict,
 }
@@ -50,6 +52,8 @@ impl Names {
         let plain = plain(name);
         let mut wanted: String = match self.naming {
             Naming::Free => plain.chars().map(|c| if c.is_whitespace() || c.is_control() || c == '"' { '_' } else { c }).collect(),
+            // XML 1.0 has no place for control characters and these two.
+            Naming::Quoted => plain.chars().map(|c| if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') { '_' } else { c }).collect(),
             Naming::Strict => in_ascii(&plain).chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).take(LONGEST).collect(),
         };
         if wanted.is_empty() || (self.naming == Naming::Strict && !wanted.starts_with(|c: char| c.is_ascii_alphabetic())) {

@@ -52,7 +52,7 @@ mod tests {
 
     #[test]
     fn other_endings_say_what_there_is() {
-        assert!(matches!(curve_format_for(Origin::NONE, "a.glb"), Err(FormatFault::LaterFormat { format: "glTF", .. })));
+        assert!(matches!(curve_format_for(Origin::NONE, "a.gltf"), Err(FormatFault::LaterFormat { format: "glTF as text", .. })));
         assert!(matches!(curve_format_for(Origin::NONE, "a.xyz"), Err(FormatFault::NoSuchFormat { .. })));
         assert!(matches!(curve_format_for(Origin::NONE, "a.inp"), Err(FormatFault::Unsupported { .. })));
     }

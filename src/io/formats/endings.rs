@@ -19,12 +19,15 @@ pub enum Sort {
     Points,
     /// Lists of records.
     Records,
+    /// Tables with a header.
+    Tables,
     /// Pictures.
     Pictures,
 }
 
 /// All sorts.
-const SORTS: [Sort; 7] = [Sort::Meshes, Sort::Curves, Sort::Surfaces, Sort::Shells, Sort::Points, Sort::Records, Sort::Pictures];
+const SORTS: [Sort; 8] =
+    [Sort::Meshes, Sort::Curves, Sort::Surfaces, Sort::Shells, Sort::Points, Sort::Records, Sort::Tables, Sort::Pictures];
 /// Endings of CAD files.
 const CAD: [&str; 4] = [IGES[0], IGES[1], STEP[0], STEP[1]];
 /// Endings of IGES files.
@@ -33,10 +36,12 @@ pub const IGES: [&str; 2] = ["igs", "iges"];
 pub const STEP: [&str; 2] = ["step", "stp"];
 /// Endings of lists of records.
 const RECORDS: [&str; 2] = ["csv", "json"];
+/// Endings of tables.
+const TABLES: [&str; 1] = ["csv"];
 /// Endings of pictures.
 const PICTURES: [&str; 2] = ["png", "svg"];
 /// Formats of a later version, by ending.
-const LATER: &[(&str, &str)] = &[("glb", "glTF"), ("gltf", "glTF"), ("html", "HTML")];
+const LATER: &[(&str, &str)] = &[("gltf", "glTF as text"), ("html", "HTML")];
 
 impl Sort {
     /// Its plural.
@@ -48,6 +53,7 @@ impl Sort {
             Self::Shells => "shells",
             Self::Points => "points",
             Self::Records => "lists of records",
+            Self::Tables => "tables",
             Self::Pictures => "pictures",
         }
     }
@@ -59,6 +65,7 @@ impl Sort {
             Self::Curves => CURVE_FORMATS.iter().map(|format| format.name).chain(CAD).collect(),
             Self::Surfaces | Self::Shells | Self::Points => CAD.to_vec(),
             Self::Records => RECORDS.to_vec(),
+            Self::Tables => TABLES.to_vec(),
             Self::Pictures => PICTURES.to_vec(),
         }
     }
@@ -121,7 +128,9 @@ mod tests {
         assert_eq!(said("x.igs", Sort::Meshes), "igs holds curves, surfaces, shells and points, not meshes");
         assert_eq!(said("x.json", Sort::Pictures), "json holds lists of records, not pictures");
         assert_eq!(said("x.step", Sort::Meshes), "step holds curves, surfaces, shells and points, not meshes");
-        assert!(said("x.glb", Sort::Surfaces).contains("not in this version"));
+        assert_eq!(said("x.glb", Sort::Surfaces), "glb holds meshes, not surfaces");
+        assert_eq!(said("x.3mf", Sort::Curves), "3mf holds meshes, not curves");
+        assert!(said("x.gltf", Sort::Surfaces).contains("not in this version"));
         assert!(said("x.xyz", Sort::Curves).contains("no format has the ending"));
         assert_eq!(ending_for(Origin::NONE, "a/b.SVG", Sort::Pictures).as_deref(), Ok("svg"));
     }

@@ -5,10 +5,11 @@ use crate::io::curve_files::obj::write_obj;
 use crate::io::curve_files::polylines::CurveFormat;
 use crate::io::curve_files::svg::write_svg;
 use crate::io::mesh_files::format::Format;
-use crate::io::mesh_files::{bdf, inp, msh, obj_write, ply, stl_write, vtu};
+use crate::io::mesh_files::{bdf, glb, inp, msh, obj_write, ply, stl_write, threemf, vtu};
 
 /// All mesh formats.
-pub const FORMATS: &[Format] = &[stl_write::FORMAT, obj_write::FORMAT, ply::FORMAT, vtu::FORMAT, msh::FORMAT, inp::FORMAT, bdf::FORMAT];
+pub const FORMATS: &[Format] =
+    &[stl_write::FORMAT, obj_write::FORMAT, ply::FORMAT, vtu::FORMAT, msh::FORMAT, inp::FORMAT, bdf::FORMAT, glb::FORMAT, threemf::FORMAT];
 
 const fn element_count() -> usize {
     let (mut n, mut k) = (0, 0);

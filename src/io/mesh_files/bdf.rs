@@ -16,7 +16,7 @@ use crate::io::mesh_files::deck::{Deck, Encoding};
 use crate::io::mesh_files::element_groups::runs;
 use crate::io::mesh_files::element_shape::Shape;
 use crate::io::mesh_files::elements::{KINDS, Kind, element_numbers};
-use crate::io::mesh_files::format::Format;
+use crate::io::mesh_files::format::{Format, Takes};
 use crate::mesh::Mesh;
 
 /// Text only.
@@ -38,6 +38,9 @@ pub const FORMAT: Format = Format {
         ("CSHEAR", Shape::Quad4),
         ("CQUAD8", Shape::Quad8),
     ],
+    takes: Takes::Any,
+    unit: None,
+    colors: false,
     holds: "nodes, elements of order 1 and 2, a property per surface and curve, sets of elements and nodes",
     write,
 };

@@ -1,5 +1,7 @@
 //! What a writer of meshes gets: the mesh, the unit of the file and the settings of the export.
 
+use glam::DVec3;
+
 use crate::base::origin::Origin;
 use crate::mesh::Mesh;
 
@@ -23,6 +25,8 @@ pub struct Options {
     /// Names of the groups that the script declares. A format without names loses these by a warning, while the sets that every
     /// mesh has by itself, one per surface and shell, are a word for those who ask.
     pub groups: Vec<String>,
+    /// Colours of surfaces by name, red, green and blue from 0 to 1 as screens take them (sRGB); for formats that hold them.
+    pub colors: Vec<(String, [f64; 3])>,
     /// Model units in one unit of the file; `None` when the file is in model units.
     pub units_per_file_unit: Option<f64>,
 }
@@ -45,6 +49,16 @@ impl Deck<'_> {
             Some(unit) => (p / unit).to_array(),
             None => p.to_array(),
         }
+    }
+
+    /// [`node`](Self::node) as a vector.
+    pub fn place(&self, node: u32) -> DVec3 {
+        DVec3::from_array(self.node(node as usize))
+    }
+
+    /// The colour of a surface, where one is known.
+    pub fn color(&self, surface: &str) -> Option<[f64; 3]> {
+        self.options.colors.iter().find(|(name, _)| name == surface).map(|(_, rgb)| *rgb)
     }
 
     /// Whether the file is text, with the format's default.

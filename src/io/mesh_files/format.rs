@@ -6,9 +6,21 @@ use crate::base::fault::Edit;
 use crate::base::origin::Origin;
 use crate::io::files::fault::FormatFault;
 use crate::io::files::loss::Loss;
+use crate::io::mesh_files::closed_bodies::bodies;
 use crate::io::mesh_files::deck::{Deck, Encoding, Options};
 use crate::io::mesh_files::element_shape::Shape;
 use crate::mesh::Mesh;
+
+/// Which meshes a format takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Takes {
+    /// All.
+    Any,
+    /// Those that have triangles or quads, or nothing at all.
+    Faces,
+    /// Those whose faces enclose bodies, or that have nothing at all.
+    Bodies,
+}
 
 /// A file format.
 pub struct Format {
@@ -22,6 +34,12 @@ pub struct Format {
     pub encodings: &'static [Encoding],
     /// Element names of a deck with their shapes, the default of each shape first; empty where `element:` means nothing.
     pub elements: &'static [(&'static str, Shape)],
+    /// The meshes that it takes.
+    pub takes: Takes,
+    /// Name of the unit of length that all its files have; `None` where a file may be in any unit.
+    pub unit: Option<&'static str>,
+    /// Whether it holds the colours of surfaces.
+    pub colors: bool,
     /// What of a mesh is kept in the file, in a few words: for the guide.
     pub holds: &'static str,
     /// Writes a deck.
@@ -46,10 +64,16 @@ impl Format {
                 edits: vec![Edit::Set("encoding", has.to_owned())],
             });
         }
-        if self.name == "stl" && deck.mesh.triangles.is_empty() && deck.mesh.quads.is_empty() && !deck.mesh.nodes.is_empty() {
-            let what = format!("STL holds triangles, and `{}` has none", deck.mesh.name);
+        if self.takes != Takes::Any && deck.mesh.triangles.is_empty() && deck.mesh.quads.is_empty() && !deck.mesh.nodes.is_empty() {
+            let what = format!("{} holds triangles, and `{}` has none", self.name.to_uppercase(), deck.mesh.name);
             let help = Some("write its lines as .obj, .vtu or .msh".to_owned());
             return Err(FormatFault::Unsupported { of, what, help, edits: Vec::new() });
+        }
+        if self.takes == Takes::Bodies
+            && let Err(defect) = bodies(deck.mesh)
+        {
+            let what = format!("{} holds closed bodies, and `{}` has {}", self.name.to_uppercase(), deck.mesh.name, defect.words(deck));
+            return Err(FormatFault::Unsupported { of, what, help: Some(defect.help().to_owned()), edits: Vec::new() });
         }
         let mut taken: Vec<(Shape, &str)> = Vec::new();
         for (name, of) in &deck.options.elements {

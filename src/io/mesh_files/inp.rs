@@ -15,7 +15,7 @@ use crate::io::mesh_files::deck::{Deck, Encoding};
 use crate::io::mesh_files::element_groups::runs;
 use crate::io::mesh_files::element_shape::Shape;
 use crate::io::mesh_files::elements::{KINDS, Kind, element_numbers};
-use crate::io::mesh_files::format::Format;
+use crate::io::mesh_files::format::{Format, Takes};
 use crate::mesh::Mesh;
 
 /// Text only.
@@ -76,6 +76,9 @@ pub const FORMAT: Format = Format {
         ("CAX8R", Shape::Quad8),
         ("DS8", Shape::Quad8),
     ],
+    takes: Takes::Any,
+    unit: None,
+    colors: false,
     holds: "nodes, elements of order 1 and 2, a set per surface, shell and group",
     write,
 };

@@ -15,7 +15,7 @@ use crate::io::files::names::Naming;
 use crate::io::mesh_files::deck::{Deck, Encoding};
 use crate::io::mesh_files::element_groups::{ElementGroup, parts};
 use crate::io::mesh_files::elements::{KINDS, Kind};
-use crate::io::mesh_files::format::Format;
+use crate::io::mesh_files::format::{Format, Takes};
 use crate::io::mesh_files::sets::{Set, sets};
 use crate::mesh::Mesh;
 
@@ -26,6 +26,9 @@ pub const FORMAT: Format = Format {
     encoding: Encoding::Text,
     encodings: &[Encoding::Binary, Encoding::Text],
     elements: &[],
+    takes: Takes::Any,
+    unit: None,
+    colors: false,
     holds: "nodes, elements of order 1 and 2, a physical group per surface, shell and group",
     write,
 };

@@ -9,7 +9,7 @@ use crate::io::files::names::Naming;
 use crate::io::mesh_files::deck::{Deck, Encoding};
 use crate::io::mesh_files::element_groups::{ElementGroup, parts};
 use crate::io::mesh_files::elements::{KINDS, Kind};
-use crate::io::mesh_files::format::Format;
+use crate::io::mesh_files::format::{Format, Takes};
 use crate::io::mesh_files::losses::{left_out, names_lost};
 use crate::io::mesh_files::sets::sets;
 use crate::mesh::Mesh;
@@ -21,6 +21,9 @@ pub const FORMAT: Format = Format {
     encoding: Encoding::Text,
     encodings: &[Encoding::Text],
     elements: &[],
+    takes: Takes::Any,
+    unit: None,
+    colors: false,
     holds: "nodes, polygons, lines and points of order 1, a group per surface, shell and group of elements",
     write,
 };

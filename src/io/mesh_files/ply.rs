@@ -7,7 +7,7 @@ use crate::io::files::block_writer::{write_fixed, write_records};
 use crate::io::files::loss::Loss;
 use crate::io::mesh_files::binary::{coordinates, integers};
 use crate::io::mesh_files::deck::{Deck, Encoding};
-use crate::io::mesh_files::format::Format;
+use crate::io::mesh_files::format::{Format, Takes};
 use crate::io::mesh_files::losses::{left_out, names_lost};
 
 /// Binary (little endian) by default.
@@ -17,6 +17,9 @@ pub const FORMAT: Format = Format {
     encoding: Encoding::Binary,
     encodings: &[Encoding::Binary, Encoding::Text],
     elements: &[],
+    takes: Takes::Any,
+    unit: None,
+    colors: false,
     holds: "nodes, triangles, quads and lines of order 1",
     write,
 };

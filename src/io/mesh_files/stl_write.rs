@@ -4,14 +4,15 @@ use std::io::{self, Write};
 
 use glam::DVec3;
 
-use crate::base::job;
 use crate::base::text::{push_real, push_single};
 use crate::io::files::block_writer::{write_fixed, write_records};
 use crate::io::files::loss::Loss;
 use crate::io::files::names::{Names, Naming};
 use crate::io::mesh_files::deck::{Deck, Encoding};
-use crate::io::mesh_files::format::Format;
+use crate::io::mesh_files::format::{Format, Takes};
 use crate::io::mesh_files::losses::{left_out, names_lost};
+use crate::io::mesh_files::single_precision::rounding;
+use crate::io::mesh_files::triangulated::halves;
 use crate::mesh::{FaceRange, Mesh};
 
 /// Binary by default.
@@ -21,6 +22,9 @@ pub const FORMAT: Format = Format {
     encoding: Encoding::Binary,
     encodings: &[Encoding::Binary, Encoding::Text],
     elements: &[],
+    takes: Takes::Faces,
+    unit: None,
+    colors: false,
     holds: "triangles, quads as two of them; text: a name per surface",
     write,
 };
@@ -53,40 +57,20 @@ fn write(deck: &Deck, out: &mut dyn Write) -> io::Result<Vec<Loss>> {
     Ok(losses.chain(names_lost(mesh, deck.options, "the sets", |_| true)).collect())
 }
 
-/// Share of the shortest edge by which nodes may move without a word where they are rounded.
-const SHARE: f64 = 0.01;
-
 /// What is lost where coordinates are rounded to single precision: far from the origin whole edges.
 ///
 /// Fails where corners of a triangle fall together.
 fn single_precision(deck: &Deck) -> io::Result<Option<Loss>> {
-    let mesh = deck.mesh;
-    let rounded = |p: DVec3| p.as_vec3().as_dvec3();
-    let (mut moved, mut shortest) = (0.0_f64, f64::INFINITY);
-    let triangles = mesh.triangles.iter().copied().chain((0..mesh.quads.len()).flat_map(|quad| halves(mesh, quad)));
-    for nodes in job::looking(triangles) {
-        let corners = corners(deck, nodes);
-        for (a, b) in [(0, 1), (1, 2), (2, 0)].map(|(a, b)| (corners[a], corners[b])) {
-            moved = moved.max(a.distance(rounded(a)));
-            shortest = shortest.min(a.distance(b));
-            if a != b && rounded(a) == rounded(b) {
-                let place = a.to_array().map(|x| x.to_string()).join(", ");
-                return Err(io::Error::other(format!(
-                    "binary STL has single precision, in which corners of a triangle at ({place}) {} coincide: write it with \
-                     `encoding: text`, or move the model to the origin",
-                    deck.unit
-                )));
-            }
-        }
-    }
-    let loss = || format!("all digits of the nodes: they move by up to {moved:.1e} {}, and `encoding: text` keeps them", deck.unit);
-    Ok((moved > SHARE * shortest).then(|| Loss::LeftOut(loss())))
-}
-
-/// The two triangles of a quad, cut from its first corner to its third: those by which areas and errors are measured.
-fn halves(mesh: &Mesh, quad: usize) -> [[u32; 3]; 2] {
-    let [a, b, c, d] = mesh.quads[quad];
-    [[a, b, c], [a, c, d]]
+    let moved = rounding(deck, DVec3::ZERO).map_err(|corners| {
+        io::Error::other(format!(
+            "binary STL has single precision, in which corners of a triangle at {} coincide: write it with `encoding: text`, or move the \
+             model to the origin",
+            corners.place(deck)
+        ))
+    })?;
+    let loss =
+        |moved: f64| format!("all digits of the nodes: they move by up to {moved:.1e} {}, and `encoding: text` keeps them", deck.unit);
+    Ok(moved.map(|moved| Loss::LeftOut(loss(moved))))
 }
 
 fn normal(a: DVec3, b: DVec3, c: DVec3) -> DVec3 {
@@ -96,7 +80,7 @@ fn normal(a: DVec3, b: DVec3, c: DVec3) -> DVec3 {
 }
 
 fn corners(deck: &Deck, nodes: [u32; 3]) -> [DVec3; 3] {
-    nodes.map(|n| DVec3::from_array(deck.node(n as usize)))
+    nodes.map(|n| deck.place(n))
 }
 
 fn facet(deck: &Deck, nodes: [u32; 3], record: &mut [u8; 50]) {

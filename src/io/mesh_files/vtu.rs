@@ -12,7 +12,7 @@ use crate::io::files::names::Naming;
 use crate::io::mesh_files::binary::{coordinates, integers};
 use crate::io::mesh_files::deck::{Deck, Encoding};
 use crate::io::mesh_files::elements::{KINDS, Kind};
-use crate::io::mesh_files::format::Format;
+use crate::io::mesh_files::format::{Format, Takes};
 use crate::io::mesh_files::sets::{Set, sets};
 use crate::mesh::Mesh;
 
@@ -23,6 +23,9 @@ pub const FORMAT: Format = Format {
     encoding: Encoding::Binary,
     encodings: &[Encoding::Binary, Encoding::Text],
     elements: &[],
+    takes: Takes::Any,
+    unit: None,
+    colors: false,
     holds: "nodes, elements of order 1 and 2, an array per surface, shell and group",
     write,
 };

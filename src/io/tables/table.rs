@@ -30,7 +30,7 @@ impl Cell {
 /// A table as it stands in a file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Table {
-    /// Lines above the numbers (dat and txt only).
+    /// Lines above the numbers (dat and txt); a csv is written with them as comments.
     pub title: Vec<String>,
     /// Names of the columns, without the unit in brackets.
     pub header: Option<Vec<String>>,

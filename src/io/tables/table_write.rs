@@ -5,8 +5,11 @@ use std::io::{self, Write};
 use crate::base::text::push_real;
 use crate::io::tables::table::{Cell, Table};
 
-/// Writes a csv with commas: the header, then a line per row; quantities with their unit, reals with all their digits.
+/// Writes a csv with commas: the title as comments, the header, then a line per row; quantities with their unit, reals with all their digits.
 pub fn write_csv(table: &Table, out: &mut dyn Write) -> io::Result<()> {
+    for line in &table.title {
+        writeln!(out, "# {line}")?;
+    }
     let mut writer = csv::WriterBuilder::new().flexible(true).from_writer(out);
     if let Some(header) = &table.header {
         writer.write_record(header)?;
