@@ -9,7 +9,6 @@ mod examples;
 mod explain;
 mod fmt;
 mod interrupt;
-mod later;
 mod lsp;
 mod man;
 mod model;
@@ -18,11 +17,13 @@ mod options;
 mod progress;
 mod render;
 pub mod repl;
+mod rewrite;
 mod run;
 mod summary;
 mod terminal;
 mod test;
 mod variants;
+pub mod view;
 
 use std::process::ExitCode;
 
@@ -43,23 +44,21 @@ pub struct Command {
 }
 
 /// All subcommands, in the order of the help.
-const COMMANDS: &[&[Command]] = &[
-    &[
-        run::COMMAND,
-        check::COMMAND,
-        repl::COMMAND,
-        lsp::COMMAND,
-        render::COMMAND,
-        test::COMMAND,
-        diff::COMMAND,
-        new::COMMAND,
-        fmt::COMMAND,
-        explain::COMMAND,
-        doc::COMMAND,
-        completions::COMMAND,
-        man::COMMAND,
-    ],
-    later::COMMANDS,
+const COMMANDS: &[Command] = &[
+    run::COMMAND,
+    check::COMMAND,
+    repl::COMMAND,
+    view::command::COMMAND,
+    lsp::COMMAND,
+    render::COMMAND,
+    test::COMMAND,
+    diff::COMMAND,
+    new::COMMAND,
+    fmt::COMMAND,
+    explain::COMMAND,
+    doc::COMMAND,
+    completions::COMMAND,
+    man::COMMAND,
 ];
 
 /// How the program ends.
@@ -107,7 +106,7 @@ fn command_line() -> clap::Command {
         let after = made.get_after_help().map(|text| format!("\n\n{text}")).unwrap_or_default();
         if examples::of(c.name).is_empty() { made } else { made.after_help(format!("{}{after}", examples::text(c.name))) }
     };
-    COMMANDS.iter().copied().flatten().fold(root, |root, c| root.subcommand(subcommand(c)))
+    COMMANDS.iter().fold(root, |root, c| root.subcommand(subcommand(c)))
 }
 
 /// Runs the program.
@@ -127,7 +126,7 @@ pub fn main() -> ExitCode {
     let terminal = Terminal::new(matches.get_one::<String>("color").map_or("auto", String::as_str));
     interrupt::keep_panics_quiet();
     let Some((name, arguments)) = matches.subcommand() else { return Exit::Usage.into() };
-    match COMMANDS.iter().copied().flatten().find(|c| c.name == name) {
+    match COMMANDS.iter().find(|c| c.name == name) {
         Some(command) => terminal.end((command.run)(arguments, &terminal)).into(),
         None => Exit::Usage.into(),
     }

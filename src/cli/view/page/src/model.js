@@ -1,0 +1,142 @@
+// From a frame to what stands in the picture. All buffers of a frame are fetched first, then everything changes at once.
+
+import { Buffers } from './buffers.js';
+import { Drawing } from './drawing.js';
+
+/** Shades that say something about meshes only; with one of them meshes are shown instead of their surfaces. */
+export const MESH_SHADES = new Set(['mesh', 'quality-angle', 'quality-jacobian', 'quality-length', 'decided']);
+
+export class Model {
+  constructor(stage, state) {
+    this.stage = stage;
+    this.state = state;
+    this.buffers = new Buffers();
+    this.frame = null;
+    this.drawings = [];
+    this.compared = []; // Drawings of the other state of the model.
+    this.newest = 0;
+    this.times = {};
+    // What has left is let go after the next picture: its successor then finds the shaders still compiled.
+    this.leaving = [];
+    stage.after.push(() => {
+      for (const drawing of this.leaving.splice(0)) drawing.dispose();
+    });
+  }
+
+  /**
+   * Shows a frame; gives false where a newer one came meanwhile. `number` counts the calls, so that what was asked
+   * first and came last is dropped.
+   */
+  async show(frame, server) {
+    const turn = ++this.newest;
+    const things = [...frame.things, ...(frame.compare?.things ?? [])];
+    const keys = things.flatMap((thing) => (thing.buffers ?? []).map((buffer) => buffer.key));
+    await this.buffers.load(keys, (key) => server.buffer(key));
+    if (turn !== this.newest) return false;
+    const first = !this.frame || !this.stage.box;
+    this.frame = frame;
+    if (this.stage.setBox(frame.box)) this.moved = true;
+    this.drawings = this.renew(this.drawings, frame.things);
+    this.compared = this.renew(this.compared, frame.compare?.things ?? []);
+    for (const drawing of this.compared) drawing.ghost = true;
+    this.buffers.keep(keys);
+    if (first && frame.box && !this.state.get().view) this.stage.fit();
+    return true;
+  }
+
+  /** Keeps drawings whose thing still has the same buffer, makes the new ones and drops the rest. */
+  renew(old, things) {
+    const byName = new Map(old.map((drawing) => [drawing.id, drawing]));
+    const made = [];
+    for (const thing of things) {
+      for (const { key } of thing.buffers ?? []) {
+        const buffer = this.buffers.get(key);
+        const roles = buffer.role === 'mesh' ? [buffer.geometry && 'mesh', buffer.bars && 'bars'].filter(Boolean) : [buffer.role];
+        for (const role of roles) {
+          const id = `${thing.name}\n${role}\n${key}`;
+          let drawing = byName.get(id);
+          if (drawing) byName.delete(id);
+          else {
+            drawing = new Drawing(thing.name, buffer, role);
+            drawing.id = id;
+            this.stage.scene.add(drawing.object);
+          }
+          drawing.thing = thing;
+          // A shell lies on the surfaces that it holds: these are before it.
+          if (thing.kind === 'shell' && drawing.isSolid)
+            drawing.object.material.polygonOffsetFactor = drawing.object.material.polygonOffsetUnits = 2;
+          drawing.place(this.stage.origin);
+          made.push(drawing);
+        }
+      }
+    }
+    for (const drawing of byName.values()) {
+      drawing.object.removeFromParent();
+      drawing.dropPasses();
+      this.leaving.push(drawing);
+    }
+    const surfaces = new Map(made.filter((drawing) => drawing.role === 'faces').map((drawing) => [drawing.name, drawing]));
+    for (const drawing of made) {
+      const faces = surfaces.get(drawing.name);
+      drawing.faceName = (n) => faces?.buffer.header.faces?.[n]?.name ?? null;
+    }
+    return made;
+  }
+
+  thing(name) {
+    return this.frame?.things.find((thing) => thing.name === name) ?? null;
+  }
+
+  /** Whether a thing is shown: as a person said, else as the shade and the frame say. */
+  isShown(thing) {
+    const { shown, only, shade } = this.state.get();
+    if (only) return only.includes(thing.name);
+    if (thing.name in shown) return shown[thing.name];
+    const meshed = this.frame.things.some((other) => other.kind === 'mesh');
+    if (MESH_SHADES.has(shade) && meshed) {
+      if (thing.kind === 'mesh') return true;
+      if (thing.kind === 'surface' || thing.kind === 'shell') return !this.isMeshed(thing.name);
+    }
+    return thing.visible !== false;
+  }
+
+  /** Whether a mesh is there of a thing, of something that holds it, or of all that it holds. */
+  isMeshed(name) {
+    const { things } = this.frame;
+    const parts = this.thing(name)?.of ?? [];
+    return things.some((mesh) => {
+      if (mesh.kind !== 'mesh' || mesh.unmade) return false;
+      const of = mesh.of ?? [];
+      if (of.some((one) => one === name || this.thing(one)?.of?.includes(name))) return true;
+      return parts.length > 0 && parts.every((part) => of.includes(part));
+    });
+  }
+
+  visible() {
+    return this.drawings.filter((drawing) => drawing.object.visible);
+  }
+
+  /** The box of things by name, from the boxes of their buffers; groups count what they hold. */
+  boxOf(names) {
+    const wanted = new Set(names);
+    for (const thing of this.frame?.things ?? []) {
+      if (wanted.has(thing.name) && !(thing.buffers?.length > 0)) for (const name of thing.of ?? []) wanted.add(name);
+    }
+    let box = null;
+    for (const { name, buffer } of this.drawings) {
+      const own = buffer.header.box;
+      if (!wanted.has(name) || !own) continue;
+      box = box ? [box[0].map((l, i) => Math.min(l, own[0][i])), box[1].map((h, i) => Math.max(h, own[1][i]))] : own;
+    }
+    return box;
+  }
+
+  /** Names of the things whose chain of lines has this line. */
+  thingsAt(file, line) {
+    return (this.frame?.things ?? [])
+      .filter((thing) =>
+        (thing.chain ?? []).some((place) => place.file === file && line >= place.line && line <= (place.end_line ?? place.line)),
+      )
+      .map((thing) => thing.name);
+  }
+}

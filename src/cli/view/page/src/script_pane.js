@@ -1,0 +1,143 @@
+// The script beside the picture: its lines with marks of diagnostics, and the chain of lines that made what is picked.
+
+import { element } from './dom.js';
+
+const WORDS =
+  /(\/\/.*$)|("(?:[^"\\]|\\.)*")|(\b\d[\d_]*(?:\.\d+)?(?:e[+-]?\d+)?(?:[a-zA-Z%°]+\d?)?)|\b(and|as|check|curve|else|export|false|fn|for|group|if|import|in|let|mesh|modeling|near|none|not|of|on|or|param|picture|point|report|shell|snap|surface|then|to|tolerance|true|units|use|within)\b/g;
+
+/** `on` has `line(file, line)`, `goTo(place)` and `linkTo(place)`. */
+export function createScriptPane(holder, on) {
+  let frame = null;
+  let shown = 0;
+  let chain = [];
+  const picker = element('select', {
+    'aria-label': 'Source file',
+    onchange: () => {
+      shown = Number(picker.value);
+      drawLines();
+    },
+  });
+  const chainList = element('ol', { class: 'chain', hidden: true, 'aria-label': 'Lines that made it' });
+  const lines = element('div', { class: 'code', role: 'list', tabindex: '0', 'aria-label': 'Script' });
+  holder.append(element('div', { class: 'files' }, picker), chainList, lines);
+
+  function setFrame(next) {
+    const same =
+      frame &&
+      frame.sources.length === next.sources.length &&
+      frame.sources.every((source, i) => source.text === next.sources[i].text && source.file === next.sources[i].file) &&
+      JSON.stringify(frame.diagnostics) === JSON.stringify(next.diagnostics);
+    frame = next;
+    if (same) return;
+    shown = Math.min(shown, Math.max(frame.sources.length - 1, 0));
+    picker.replaceChildren(...frame.sources.map((source, i) => element('option', { value: String(i), text: source.file })));
+    picker.value = String(shown);
+    picker.parentElement.hidden = frame.sources.length < 2;
+    drawLines();
+  }
+
+  function drawLines() {
+    picker.value = String(shown);
+    const source = frame.sources[shown];
+    const marks = new Map();
+    for (const diagnostic of frame.diagnostics) {
+      for (const place of diagnostic.places.slice(0, 1)) {
+        if (place.file !== shown) continue;
+        if (!marks.has(place.line) || diagnostic.severity === 'error') marks.set(place.line, diagnostic);
+      }
+    }
+    for (const check of frame.checks)
+      if (!check.pass && check.place?.file === shown && !marks.has(check.place.line))
+        marks.set(check.place.line, { severity: 'error', code: 'check', message: `${check.text} — found ${check.found ?? 'otherwise'}` });
+    const texts = (source?.text ?? '').split('\n');
+    lines.style.setProperty('--digits', String(texts.length).length);
+    lines.replaceChildren(
+      ...texts.map((text, i) => {
+        const mark = marks.get(i + 1);
+        return element(
+          'div',
+          {
+            class: `line ${mark?.severity ?? ''}`,
+            role: 'listitem',
+            dataset: { line: String(i + 1) },
+            title: mark ? `${mark.code}: ${mark.message}` : null,
+            onclick: () => on.line(shown, i + 1),
+          },
+          element('span', { class: 'number', text: String(i + 1) }),
+          element('code', {}, coloured(text)),
+        );
+      }),
+    );
+    light();
+  }
+
+  function coloured(text) {
+    const parts = [];
+    let from = 0;
+    for (const match of text.matchAll(WORDS)) {
+      parts.push(
+        text.slice(from, match.index),
+        element('span', { class: match[1] ? 'c' : match[2] ? 's' : match[3] ? 'n' : 'k', text: match[0] }),
+      );
+      from = match.index + match[0].length;
+    }
+    parts.push(text.slice(from));
+    return parts;
+  }
+
+  /** Shows a chain of places: the first is the line a person would name. */
+  function setChain(places, scroll = true) {
+    chain = places ?? [];
+    chainList.hidden = chain.length === 0;
+    chainList.replaceChildren(
+      ...chain.map((place, i) => {
+        const source = frame.sources[place.file];
+        const text = (source?.text ?? '').split('\n')[place.line - 1]?.trim() ?? '';
+        return element(
+          'li',
+          {},
+          element(
+            'button',
+            { type: 'button', class: 'place', onclick: () => goTo(place, true), title: text },
+            element('span', { class: 'where', text: `${source?.file ?? '?'}:${place.line}` }),
+            element('span', { class: 'what', text: place.label ?? text }),
+          ),
+          element('a', {
+            href: on.linkTo(place),
+            class: 'editor',
+            text: 'open',
+            title: 'Open in the editor',
+            'aria-label': `Open ${source?.file} line ${place.line} in the editor`,
+            onclick: () => on.show(place),
+          }),
+        );
+      }),
+    );
+    if (chain.length && scroll) goTo(chain[0], false);
+    else light();
+  }
+
+  function goTo(place, tell) {
+    if (!place || !frame) return;
+    if (place.file !== shown) {
+      shown = place.file;
+      drawLines();
+    }
+    light(place);
+    const line = lines.querySelector(`[data-line="${place.line}"]`);
+    line?.scrollIntoView({ block: 'center', behavior: 'instant' });
+    if (tell) on.show(place);
+  }
+
+  function light(at = null) {
+    for (const line of lines.querySelectorAll('.of-chain, .at')) line.classList.remove('of-chain', 'at');
+    for (const place of chain) {
+      if (place.file !== shown) continue;
+      for (let n = place.line; n <= Math.min(place.end_line ?? place.line, place.line + 200); n++)
+        lines.querySelector(`[data-line="${n}"]`)?.classList.add('of-chain');
+    }
+    if (at) lines.querySelector(`[data-line="${at.line}"]`)?.classList.add('at');
+  }
+
+  return { setFrame, setChain, goTo, lightLine: (file, line) => file === shown && light({ line }) };
+}

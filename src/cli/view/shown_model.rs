@@ -1,0 +1,160 @@
+//! The model behind the page: evaluations by the session, and frames as JSON and bytes.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::model::{Buffer, Compare, Evaluated, Evaluation, Frame, Model, Progress, Request, Watched};
+use crate::base::job::Job;
+use crate::cli::interrupt;
+use crate::cli::options::Options;
+use crate::session::guard::Bug;
+use crate::session::live::Clock;
+use crate::session::view::frame::{self, Said};
+use crate::session::view::viewer::{View, Viewer, Wanted};
+use crate::session::view::write_back::{defaults_of, joined};
+
+/// A script that is shown.
+pub struct ShownModel {
+    viewer: Viewer,
+    /// The other state that it is compared with, and what it was made of.
+    other: Option<(OtherState, View)>,
+    name: String,
+    script: PathBuf,
+    allow: Vec<PathBuf>,
+    /// Params set on the command line.
+    sets: Vec<(String, String)>,
+    clock: Clock,
+}
+
+/// What another state of the model is made of.
+#[derive(PartialEq)]
+struct OtherState {
+    text: String,
+    sets: Vec<(String, String)>,
+    chord_error: Option<f64>,
+}
+
+/// A job that the server may stop and ask.
+struct WatchedJob(Arc<Job>);
+
+impl Watched for WatchedJob {
+    fn stop(&self) {
+        self.0.cancel();
+    }
+
+    fn progress(&self) -> Progress {
+        let ((phase, _), (done, of)) = (self.0.now(), self.0.progress());
+        Progress { phase, done, of }
+    }
+}
+
+impl ShownModel {
+    /// Of a script, with the name under which pages show it.
+    pub fn new(name: &str, script: &Path, options: &Options) -> Self {
+        let started = Instant::now();
+        let clock: Clock = Arc::new(move || started.elapsed().as_secs_f64());
+        let shown = name.to_owned();
+        let viewer = Viewer::new(&shown, Some(script), &options.allow, clock.clone());
+        let (allow, sets) = (options.allow.clone(), options.sets.clone());
+        Self { viewer, other: None, name: shown, script: script.to_owned(), allow, sets, clock }
+    }
+
+    /// The files that the model read, or looked for and did not find.
+    pub fn files(&self) -> &[PathBuf] {
+        self.viewer.files()
+    }
+
+    /// The model as it is, and whether it has neither errors nor failed checks; `None` when it was stopped.
+    ///
+    /// Fails with a bug that was caught.
+    pub fn once(&mut self, text: &str, job: &Job) -> Result<Option<(Frame, bool)>, Bug> {
+        let wanted = Wanted { number: 1, text: text.to_owned(), sets: self.sets.clone(), chord_error: None };
+        let view = self.viewer.show(&wanted, job)?;
+        Ok(view.map(|view| (packed(&view), view.frame.ok)))
+    }
+
+    /// The state to compare with, under the same params; `None` when it was stopped.
+    fn other(&mut self, compare: &Compare, wanted: &Wanted, job: &Job) -> Option<frame::Compare> {
+        let (with, text) = match compare {
+            Compare::Golden => {
+                let why = "a golden says what a model measures and holds no shapes; compare with a revision, such as HEAD";
+                ("golden".to_owned(), Err(why.to_owned()))
+            }
+            Compare::Revision(revision) => (format!("revision:{revision}"), self.at_revision(revision)),
+        };
+        let failed = |why: String| Some(frame::Compare { with: with.clone(), things: Vec::new(), failed: Some(why) });
+        let text = match text {
+            Ok(text) => text,
+            Err(why) => return failed(why),
+        };
+        let state = OtherState { text, sets: wanted.sets.clone(), chord_error: wanted.chord_error };
+        if self.other.as_ref().is_none_or(|(known, _)| *known != state) {
+            let mut viewer = Viewer::new(&self.name, Some(&self.script), &self.allow, self.clock.clone());
+            match viewer.show(&Wanted { text: state.text.clone(), ..wanted.clone() }, job) {
+                Ok(view) => self.other = Some((state, view?)),
+                Err(bug) => return failed(bug.what),
+            }
+        }
+        let things = self.other.as_ref().map(|(_, view)| view.frame.things.clone()).unwrap_or_default();
+        Some(frame::Compare { with, things, failed: None })
+    }
+
+    /// The text of the script at a revision.
+    fn at_revision(&self, revision: &str) -> Result<String, String> {
+        let folder = self.script.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let file = self.script.file_name().unwrap_or_default().to_string_lossy();
+        let output = Command::new("git").arg("-C").arg(folder).args(["show", &format!("{revision}:./{file}")]).output();
+        match output {
+            Ok(output) if output.status.success() => Ok(String::from_utf8_lossy(&output.stdout).into_owned()),
+            Ok(output) => Err(String::from_utf8_lossy(&output.stderr).trim().to_owned()),
+            Err(error) => Err(format!("git cannot be run: {error}")),
+        }
+    }
+}
+
+impl Model for ShownModel {
+    fn evaluate(&mut self, request: &Request, evaluation: &Evaluation) -> Evaluated {
+        let job = interrupt::own_job();
+        evaluation.watch(Arc::new(WatchedJob(job.clone())));
+        let text = String::from_utf8_lossy(&request.text).into_owned();
+        // A param that was moved and is no longer there is forgotten; what the command line sets must be there.
+        let is_known = |name: &str| !defaults_of(&text, name).is_empty() || self.sets.iter().any(|set| set.0 == name);
+        let moved = request.sets.iter().filter(|(name, _)| is_known(name));
+        let sets = moved.map(|(name, text)| (name.clone(), joined(text))).collect();
+        let wanted = Wanted { number: request.number, text, sets, chord_error: request.chord_error };
+        let mut view = match self.viewer.show(&wanted, &job) {
+            Ok(Some(view)) => view,
+            Ok(None) => return Evaluated::default(),
+            Err(bug) => after_bug(request.number, self.viewer.last().clone(), &self.name, &bug),
+        };
+        if let Some(compare) = &request.compare {
+            let Some(other) = self.other(compare, &wanted, &job) else { return Evaluated::default() };
+            if let (None, Some((_, other))) = (&other.failed, &self.other) {
+                view.buffers.extend(other.buffers.iter().map(|(key, buffer)| (key.clone(), buffer.clone())));
+            }
+            view.frame.compare = Some(other);
+        }
+        Evaluated { frame: Some(packed(&view)), files: Some(self.viewer.files().to_vec()) }
+    }
+}
+
+/// A frame as the server sends it.
+fn packed(view: &View) -> Frame {
+    let json = serde_json::to_string(&view.frame).unwrap_or_default();
+    let buffers = view.buffers.values().map(|buffer| Buffer { key: buffer.key.clone(), bytes: buffer.bytes.clone() });
+    Frame { json, buffers: buffers.collect() }
+}
+
+/// What is shown after a bug that was caught: what was shown before, and the bug.
+fn after_bug(number: u64, last: View, name: &str, bug: &Bug) -> View {
+    let message = format!("a bug in loft; please report it with this script: {}", bug.what);
+    let said = Said { severity: "error", code: "E999".to_owned(), message, ..Said::default() };
+    let mut things = last.frame.things;
+    things.iter_mut().for_each(|thing| thing.stale = true);
+    let (model, title) = (name.to_owned(), name.to_owned());
+    let stale = !things.is_empty();
+    let diagnostics = vec![said];
+    View { frame: frame::Frame { loft: frame::VERSION, number, ok: false, stale, model, title, things, diagnostics, ..last.frame }, ..last }
+}

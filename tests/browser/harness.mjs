@@ -1,0 +1,36 @@
+// What the tests of the page share: one browser, a stand-in server for each test, and what a person does.
+
+import assert from 'node:assert/strict';
+import { after, before } from 'node:test';
+import { canvasBox, open, PICTURES, ready, startBrowser } from './browser.mjs';
+import { startFake } from './fake_server.mjs';
+
+export let browser;
+before(async () => {
+  browser = await startBrowser();
+});
+after(() => browser.close());
+
+/** Runs `body` over a page that shows a model, and asks at the end that nothing was said in the console. */
+export async function over(model, body, settings = {}) {
+  const fake = await startFake(model, settings);
+  const opened = await open(browser, fake.address + (settings.hash ?? ''), settings);
+  try {
+    await ready(opened.page, model.frame.number);
+    await body({ ...opened, fake });
+    assert.deepEqual(opened.complaints, []);
+  } finally {
+    await opened.close();
+    await fake.close();
+  }
+}
+
+export const picture = (page, name) => page.screenshot({ path: `${PICTURES}${name}.png` });
+export const tab = (page, name) => page.click(`#tab-${name}`);
+
+/** Clicks where an absolute point is on the screen. */
+export async function clickAt(page, point) {
+  const box = await canvasBox(page);
+  const [x, y] = await page.evaluate((p) => window.loftView.toScreen(p), point);
+  await page.mouse.click(box.x + x, box.y + y);
+}

@@ -1,0 +1,6 @@
+// All tests of the viewer in a real browser: `node --test tests/browser/test.mjs`, or `tests/browser/run`.
+
+import './picture.mjs';
+import './panes.mjs';
+import './frames.mjs';
+import './program.mjs';
