@@ -22,6 +22,13 @@ const EXAMPLES: &[(&str, &[Example])] = &[
         ],
     ),
     ("repl", &[("loft repl roof.loft", "goes on with a script"), ("loft repl < session.txt", "the same from a file")]),
+    (
+        "view",
+        &[
+            ("loft view roof.loft", "opens a page that follows the script"),
+            ("loft view roof.loft --html roof.html", "one file with the model inside, for a colleague"),
+        ],
+    ),
     ("lsp", &[("loft lsp", "an editor starts it and talks to it over standard input and output")]),
     (
         "render",

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Arg, ArgAction, ArgMatches};
 
+use super::rewrite::rewrite;
 use super::{Command, Exit, Terminal};
 use crate::base::limits;
 use crate::lang::diag::diagnostic::Sources;
@@ -12,7 +13,6 @@ use crate::lang::diag::render::render_all;
 use crate::lang::fmt::{Formatted, format};
 use crate::session::disk::{read_limited, read_stream, words};
 use crate::session::guard::guarded;
-use crate::session::staging::Staging;
 
 /// Lays scripts out.
 pub const COMMAND: Command = Command { name: "fmt", about: "Canonical layout of scripts, comments kept", arguments, run };
@@ -109,7 +109,7 @@ impl Task<'_> {
         if !formatted.changed {
             return exit;
         }
-        match replace(path, &formatted.text) {
+        match rewrite(path, &formatted.text) {
             Ok(()) => {
                 self.terminal.print(&format!("{name}\n"));
                 exit
@@ -174,18 +174,4 @@ fn first_difference(old: &str, new: &str, colours: bool) -> String {
         text
     };
     format!("  line {}\n{}{}", same + 1, side(&old, '-', "31"), side(&new, '+', "32"))
-}
-
-/// Puts a text in place of a file, whole or not at all: permissions are kept, and a link goes on pointing to its file.
-fn replace(path: &Path, text: &str) -> std::io::Result<()> {
-    let real = path.canonicalize()?;
-    let permissions = fs::metadata(&real)?.permissions();
-    if permissions.readonly() {
-        return Err(std::io::Error::new(std::io::ErrorKind::PermissionDenied, "it may not be written"));
-    }
-    let staging = Staging::default();
-    super::interrupt::protect(&staging);
-    staging.write(&real, &mut |out| out.write_all(text.as_bytes()))?;
-    staging.permit(&permissions)?;
-    staging.commit().map(drop)
 }

@@ -8,6 +8,7 @@ use super::interrupt;
 use crate::base::limits::{MESH_ELEMENTS, MESH_ELEMENTS_MOST};
 
 /// What was asked for on the command line of a model.
+#[derive(Default)]
 pub struct Options {
     /// Scripts; `-` is standard input.
     pub models: Vec<String>,
@@ -56,9 +57,17 @@ pub fn add(command: clap::Command, several: bool) -> clap::Command {
     add_shared(command)
 }
 
-/// Adds the options of everything that evaluates a script.
+/// Adds the options of everything that evaluates a script and prints what it found.
 pub fn add_shared(command: clap::Command) -> clap::Command {
     let flag = |name: &'static str, help: &'static str| Arg::new(name).long(name).action(ArgAction::SetTrue).help(help);
+    add_inputs(command)
+        .arg(flag("strict", "Warnings count as errors"))
+        .arg(flag("timings", "Shows the seconds of each phase"))
+        .arg(flag("verbose", "Shows how things were found: flows, methods, counts, notes").short('v'))
+}
+
+/// Adds the options of everything that evaluates a script.
+pub fn add_inputs(command: clap::Command) -> clap::Command {
     command
         .arg(
             Arg::new("set")
@@ -76,9 +85,6 @@ pub fn add_shared(command: clap::Command) -> clap::Command {
                 .help("How many threads may work [default: one per core]; results do not depend on it"),
         )
         .args([most_elements(), most_work()])
-        .arg(flag("strict", "Warnings count as errors"))
-        .arg(flag("timings", "Shows the seconds of each phase"))
-        .arg(flag("verbose", "Shows how things were found: flows, methods, counts, notes").short('v'))
         .arg(
             Arg::new("allow")
                 .long("allow")
@@ -133,20 +139,22 @@ impl Options {
     /// Reads those of [`add_shared`]; outputs go to the folder that holds `--out`.
     pub fn read_shared(matches: &ArgMatches) -> Result<Self, String> {
         let folder = |file: &PathBuf| file.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_owned();
-        let options = Self {
-            models: matches.get_many::<String>("model").into_iter().flatten().cloned().collect(),
+        Ok(Self {
             out: matches.get_one::<PathBuf>("out").map(folder),
-            sets: matches.get_many::<(String, String)>("set").into_iter().flatten().cloned().collect(),
-            table: None,
-            cache: None,
             strict: matches.get_flag("strict"),
             timings: matches.get_flag("timings"),
-            json: false,
-            quiet: false,
-            each: false,
             verbose: matches.get_flag("verbose"),
+            ..Self::read_inputs(matches)?
+        })
+    }
+
+    /// Reads those of [`add_inputs`].
+    pub fn read_inputs(matches: &ArgMatches) -> Result<Self, String> {
+        let options = Self {
+            models: matches.get_many::<String>("model").into_iter().flatten().cloned().collect(),
+            sets: matches.get_many::<(String, String)>("set").into_iter().flatten().cloned().collect(),
             allow: matches.get_many::<PathBuf>("allow").into_iter().flatten().cloned().collect(),
-            keep_going: false,
+            ..Self::default()
         };
         if let Some((name, _)) =
             options.sets.iter().enumerate().find(|(i, s)| options.sets[..*i].iter().any(|o| o.0 == s.0)).map(|(_, s)| s)

@@ -51,6 +51,7 @@ fn arguments(command: clap::Command) -> clap::Command {
         .arg(flag("perspective", "Near things are larger"))
         .arg(flag("network", "Draws the curves and nodes of the network with it"))
         .arg(flag("labels", "Names surfaces, curves, nodes and points"))
+        .arg(flag("combs", "Draws curvature combs on curves"))
         .arg(flag("no-elements", "Leaves out the edges of elements"))
         .arg(flag("no-borders", "Leaves out the edges of faces"))
         .arg(flag("bare", "Leaves out axes, ruler and legend"));
@@ -127,6 +128,7 @@ fn wanted(matches: &ArgMatches) -> Result<Wanted, String> {
         path: name,
         path_origin: Origin::NONE,
         view,
+        views: Vec::new(),
         size: word("size").map_or(Ok(PICTURE_SIZE), size)?,
         shade: word("shade").map(|w| (w.into(), Origin::NONE)),
         zoom: Vec::new(),
@@ -139,6 +141,7 @@ fn wanted(matches: &ArgMatches) -> Result<Wanted, String> {
             axes: off("bare"),
             ruler: off("bare"),
             legend: off("bare"),
+            combs: on("combs"),
         },
         origin: Origin::NONE,
     };

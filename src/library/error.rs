@@ -4,7 +4,7 @@ use std::fmt;
 
 use super::model::Model;
 use super::names::{Names, Speaker};
-use crate::base::fault::{Fault, Say, Severity, ValueFault};
+use crate::base::fault::{Fault, Say, ValueFault};
 use crate::session::guard::Bug;
 use crate::session::report::{DiagnosticRow, LabelRow};
 
@@ -105,12 +105,7 @@ impl Error {
 /// A fault as a row that points nowhere.
 pub(super) fn row(fault: &Fault, say: &dyn Say) -> DiagnosticRow {
     let report = fault.describe(say);
-    let severity = match fault.code().severity() {
-        Severity::Error => "error",
-        Severity::Warning => "warning",
-        Severity::Note => "note",
-    };
-    let (code, labels) = (fault.code().0, Vec::new());
+    let (code, severity, labels) = (fault.code().0, fault.code().severity().word(), Vec::new());
     DiagnosticRow { code, severity, message: report.message, help: report.help, notes: report.notes, labels, count: 1 }
 }
 

@@ -8,9 +8,10 @@ use super::names::{Names, Speaker};
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::io::{Deck, Loss, Options, format_for};
-use crate::lang::values::units::LengthUnit;
+use crate::lang::values::units::{LengthUnit, length_unit};
 use crate::mesh;
 use crate::session::disk::{plain, write_whole};
+use crate::session::export::in_file;
 use crate::session::report::DiagnosticRow;
 
 /// Nodes and elements. Cheap to clone.
@@ -112,8 +113,8 @@ impl Mesh {
         &self.notes
     }
 
-    /// Writes it in the format of the file's ending: `.stl`, `.obj`, `.ply`, `.vtu`, `.msh`, `.inp`, `.bdf`. The file is there whole or not
-    /// at all. Gives what the format cannot hold, as warnings.
+    /// Writes it in the format of the file's ending: `.stl`, `.obj`, `.ply`, `.vtu`, `.msh`, `.inp`, `.bdf`, `.glb` (in metres),
+    /// `.3mf` (in millimetres, closed bodies alone). The file is there whole or not at all. Gives what the format cannot hold, as warnings.
     ///
     /// Fails with E804 or E805 where the ending chooses no format of meshes or the format cannot hold this one, E808 where the file cannot
     /// be written.
@@ -137,8 +138,9 @@ impl Mesh {
         let say = Speaker { names: &names, unit: Some(self.unit), tolerance: Some(self.tolerance) };
         let failed = |fault: crate::io::files::fault::FormatFault| Error::of_fault(&fault.into(), &say);
         let format = format_for(Origin::NONE, name).map_err(failed)?;
-        let options = Options { groups: self.groups.clone(), ..Options::default() };
-        let deck = Deck { mesh: &self.mesh, unit: self.unit.name, options: &options };
+        let (unit, units_per_file_unit) = in_file(format.unit.and_then(length_unit).unwrap_or(self.unit), self.unit);
+        let options = Options { groups: self.groups.clone(), units_per_file_unit, ..Options::default() };
+        let deck = Deck { mesh: &self.mesh, unit, options: &options };
         format.check(Origin::NONE, &deck).map_err(failed)?;
         let mut bytes = Vec::new();
         let losses = (format.write)(&deck, &mut bytes).map_err(|error| Error::new("E808", plain(&error)))?;

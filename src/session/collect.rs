@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::base::bbox::Box3;
-use crate::base::fault::{Fault, Say, Severity};
+use crate::base::fault::{Fault, Say};
 use crate::base::tolerance::{GAP_ROOM, Tolerance};
 use crate::lang::diag::diagnostic::{Diagnostic, Sources};
 use crate::lang::eval::context::Cx;
@@ -281,11 +281,7 @@ fn diagnostic_row(found: &Diagnostic, count: usize, sources: &Sources) -> Diagno
     };
     DiagnosticRow {
         code: found.code.0,
-        severity: match found.severity() {
-            Severity::Error => "error",
-            Severity::Warning => "warning",
-            Severity::Note => "note",
-        },
+        severity: found.severity().word(),
         message: found.message.clone(),
         help: found.help.clone(),
         notes: found.notes.clone(),

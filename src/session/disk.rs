@@ -31,6 +31,8 @@ pub struct Disk {
     unsaved: Unsaved,
     /// Files that were read, links resolved.
     read: Mutex<BTreeSet<PathBuf>>,
+    /// Files that were looked for and are not there.
+    missing: Mutex<BTreeSet<PathBuf>>,
 }
 
 impl Disk {
@@ -48,7 +50,17 @@ impl Disk {
             roots.push(path.canonicalize().map_err(|error| io::Error::new(error.kind(), format!("--allow {}: {error}", path.display())))?);
         }
         let out = std::path::absolute(out.unwrap_or(&home))?;
-        Ok(Self { home, shown_home, roots, out, outputs, staging: Staging::default(), unsaved: Unsaved::default(), read: Mutex::default() })
+        Ok(Self {
+            home,
+            shown_home,
+            roots,
+            out,
+            outputs,
+            staging: Staging::default(),
+            unsaved: Unsaved::default(),
+            read: Mutex::default(),
+            missing: Mutex::default(),
+        })
     }
 
     /// The same folders with texts that are not saved.
@@ -67,12 +79,19 @@ impl Disk {
             staging: Staging::default(),
             unsaved: self.unsaved.clone(),
             read: Mutex::default(),
+            missing: Mutex::default(),
         }
     }
 
     /// The same, with files named as seen from the script's folder, wherever the program was started.
     pub fn seen_from_home(self) -> Self {
         Self { shown_home: PathBuf::new(), ..self }
+    }
+
+    /// The files that were read, links resolved, by path, and those that were looked for and not found: a run depends on both.
+    pub fn paths_read(&self) -> Vec<PathBuf> {
+        let all = |of: &Mutex<BTreeSet<PathBuf>>| of.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        all(&self.read).into_iter().chain(all(&self.missing)).collect()
     }
 
     /// The outputs that are staged; a clone can discard them from another thread.
@@ -117,6 +136,7 @@ impl Files for Disk {
                 if !folder.is_some_and(|folder| self.allows(&folder)) {
                     return Err(FileError::Outside);
                 }
+                self.missing.lock().unwrap_or_else(PoisonError::into_inner).insert(wanted.clone());
                 return Err(FileError::Missing { similar: similar_names(&wanted) });
             }
             Err(error) => return Err(FileError::Other(plain(&error))),
@@ -143,7 +163,7 @@ impl Files for Disk {
         let place = self.place(path)?;
         let written = match self.outputs {
             Outputs::Written => self.staging.write(&place, fill),
-            Outputs::Counted => {
+            Outputs::Counted | Outputs::Skipped => {
                 let mut sink = Counted { inner: io::sink(), bytes: 0 };
                 fill(&mut sink).map(|()| sink.bytes)
             }

@@ -17,11 +17,12 @@ use crate::io::formats::endings::{IGES, STEP, Sort, misfit};
 use crate::io::tables::json::{self, Json};
 use crate::io::tables::table::{Cell, Table};
 use crate::io::tables::table_write;
-use crate::io::{Deck, Encoding, FileError, Files, Loss, Options, extension, format_for};
+use crate::io::{Deck, Encoding, FileError, Files, Format, Loss, Options, extension, format_for};
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
 use crate::lang::eval::scene::side_of;
 use crate::lang::values::plans::ExportSpec;
+use crate::lang::values::units::{LengthUnit, convert, length_unit};
 use crate::lang::values::value::{Dim, MeshValue, ModuleId, Record, Value};
 use crate::network::Chain;
 use crate::surface::Surface;
@@ -52,6 +53,7 @@ fn written(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<OutputRo
         (_, Sort::Meshes) => mesh(cx, spec, files)?,
         (_, Sort::Curves) => curves(cx, spec, files)?,
         (_, Sort::Records) => records(cx, spec, files)?,
+        (_, Sort::Tables) => super::export_tables::table(cx, spec, files)?,
         _ => return Err(misfit(spec.path_origin, &spec.path, sort).into()),
     };
     Loss::faults(&losses, spec.path_origin, &spec.path).into_iter().for_each(|fault| cx.say(&fault.into()));
@@ -105,6 +107,7 @@ fn sort_of(value: &Value) -> Option<Sort> {
         Value::Shell(_) => Sort::Shells,
         Value::Vector(_, Dim::LENGTH) | Value::Node(_) => Sort::Points,
         Value::Record(_) => Sort::Records,
+        Value::Table(_) => Sort::Tables,
         _ => return None,
     })
 }
@@ -171,12 +174,26 @@ pub(super) fn write_file(
     })
 }
 
-/// Name of the file's unit of length, and model units in one of it where it is another one.
+/// Name of the file's unit of length, and model units in one of it where it is another one. A format that has a unit of its own decides.
 pub(super) fn unit_of(cx: &Cx, spec: &ExportSpec) -> (&'static str, Option<f64>) {
-    let model = cx.unit();
-    match spec.units {
-        Some((unit, _)) if unit != model => (unit.name, Some(crate::lang::values::units::convert(1.0, unit, model, 1))),
-        _ => (model.name, None),
+    let own = format_for(spec.path_origin, &spec.path).ok().and_then(|format| format.unit).and_then(length_unit);
+    in_file(own.or(spec.units.map(|said| said.0)).unwrap_or(cx.unit()), cx.unit())
+}
+
+/// Name of a unit of length, and model units in one of it where it is another one.
+pub(crate) fn in_file(unit: LengthUnit, model: LengthUnit) -> (&'static str, Option<f64>) {
+    (unit.name, (unit != model).then(|| convert(1.0, unit, model, 1)))
+}
+
+/// E805 where `units:` asks for another unit than the one that all files of a format have.
+fn unit_fits(format: &Format, spec: &ExportSpec) -> Result<(), Halt> {
+    match (format.unit, spec.units) {
+        (Some(own), Some((unit, of))) if unit.name != own => {
+            let word = if unit.name == "in" { "inch" } else { unit.name };
+            let what = format!("lengths in {} files are in {own}, got `units: {word}`", format.name.to_uppercase());
+            Err(FormatFault::Unsupported { of, what, help: Some("remove `units:`".to_owned()), edits: vec![Edit::DropSetting] }.into())
+        }
+        _ => Ok(()),
     }
 }
 
@@ -185,15 +202,27 @@ fn mesh(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<Written, Ha
     let [(Value::Mesh(value), _)] = spec.things.as_slice() else {
         return Err(one_thing(spec));
     };
+    unit_fits(format, spec)?;
     let mesh = cx.mesh(value)?;
     let (unit, units_per_file_unit) = unit_of(cx, spec);
+    let colors = if format.colors { colors_of(cx, value) } else { Vec::new() };
     let encoding = spec.encoding.as_ref().map(|(word, _)| if **word == *"binary" { Encoding::Binary } else { Encoding::Text });
     let elements = spec.elements.iter().map(|(word, place)| (word.to_string(), *place)).collect();
     let groups = cx.groups(ModuleId::MAIN)?.iter().map(|group| group.name.to_string()).collect();
-    let options = Options { encoding, elements, groups, units_per_file_unit };
+    let options = Options { encoding, elements, groups, colors, units_per_file_unit };
     let deck = Deck { mesh: &mesh, unit, options: &options };
     format.check(spec.path_origin, &deck)?;
     put(spec, files, &mut |out| (format.write)(&deck, out))
+}
+
+/// Colours of the surfaces that a mesh is of, by name.
+fn colors_of(cx: &Cx, mesh: &MeshValue) -> Vec<(String, [f64; 3])> {
+    let MeshValue::Declared { module, index } = mesh else { return Vec::new() };
+    let colors = Colors::of(cx);
+    let meshes = cx.meshes(*module);
+    let things = meshes.get(*index as usize).map_or(&[][..], |mesh| &mesh.things);
+    let surfaces = things.iter().flat_map(|(value, _)| surfaces_of(value));
+    surfaces.filter_map(|surface| Some((cx.name(surface.origin()), colors.of_surface(surface)?))).collect()
 }
 
 fn one_thing(spec: &ExportSpec) -> Halt {

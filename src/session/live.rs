@@ -18,7 +18,9 @@ pub type Clock = Arc<dyn Fn() -> f64 + Send + Sync>;
 pub enum Depth {
     /// Values, network, surfaces and checks; meshes that nothing asks for, areas and volumes are left out.
     Values,
-    /// Everything but writing.
+    /// Everything but exports and pictures.
+    Shown,
+    /// Everything but writing: what exports and pictures say is said.
     Report,
     /// Everything; outputs are written.
     Files,
@@ -41,13 +43,14 @@ pub struct Live {
     kept: Kept,
     clock: Clock,
     unsaved: Unsaved,
+    read: Vec<PathBuf>,
 }
 
 impl Live {
     /// A model shown as `name`; its imports are looked for beside `script`, or in the current folder.
     pub fn new(name: &str, script: Option<&Path>, allow: &[PathBuf], clock: Clock) -> Self {
         let (name, script, allow) = (name.to_owned(), script.map(Path::to_owned), allow.to_vec());
-        Self { name, script, allow, kept: Kept::default(), clock, unsaved: Unsaved::default() }
+        Self { name, script, allow, kept: Kept::default(), clock, unsaved: Unsaved::default(), read: Vec::new() }
     }
 
     /// Texts that the next runs read instead of the files of their names.
@@ -58,6 +61,11 @@ impl Live {
     /// The file beside which its imports are looked for.
     pub fn script(&self) -> Option<&Path> {
         self.script.as_deref()
+    }
+
+    /// The files that the last run read, or looked for and did not find.
+    pub fn files(&self) -> &[PathBuf] {
+        &self.read
     }
 
     /// Its name.
@@ -76,7 +84,11 @@ impl Live {
         job: &Job,
         look: &mut (dyn FnMut(&mut Cx<'_>) + Send),
     ) -> Result<Outcome, Bug> {
-        let outputs = if depth == Depth::Files { Outputs::Written } else { Outputs::Counted };
+        let outputs = match depth {
+            Depth::Files => Outputs::Written,
+            Depth::Shown => Outputs::Skipped,
+            Depth::Values | Depth::Report => Outputs::Counted,
+        };
         self.evaluate(text, sets, Destination { folder: None, picture: None, outputs }, depth, job, look)
     }
 
@@ -108,6 +120,7 @@ impl Live {
             let again = Again { kept: &mut kept, light: depth == Depth::Values, look };
             run_again(&task, &disk, job, again)
         });
+        self.read = disk.paths_read();
         // After a bug there may be half of something in it.
         self.kept = if result.is_ok() { kept } else { Kept::default() };
         result

@@ -66,7 +66,8 @@ fn values_of(cx: &mut Cx, names: &[String], asked: &mut usize) -> Result<Vec<(Va
 fn is_drawn(value: &Value) -> bool {
     use Value as V;
     let faces = matches!(value, V::Surface(_) | V::Shell(_) | V::Mesh(_) | V::Patch(..));
-    faces || matches!(value, V::Curve(_) | V::Link(..) | V::Edge(..) | V::Vertex(..) | V::Vector(..) | V::Node(_))
+    let flat = matches!(value, V::Drawing(_));
+    faces || flat || matches!(value, V::Curve(_) | V::Link(..) | V::Edge(..) | V::Vertex(..) | V::Vector(..) | V::Node(_))
 }
 
 fn everything(cx: &mut Cx, spec: &mut PictureSpec) {

@@ -6,7 +6,10 @@ use std::sync::Arc;
 
 use super::disk::Outputs;
 use super::export::write_file;
+use super::flat_drawings;
+use super::picture_combs;
 use super::picture_names as names;
+use super::picture_sheets;
 use super::picture_things::{Things, around, corners, outline, scene_of, sort};
 use super::report::OutputRow;
 use super::shades;
@@ -61,6 +64,13 @@ pub fn write(cx: &mut Cx, spec: &PictureSpec, model: &str, files: &dyn Files, ou
 
 fn written(cx: &mut Cx, spec: &PictureSpec, model: &str, files: &dyn Files, outputs: Outputs) -> Result<OutputRow, Halt> {
     let format = format_of(spec)?;
+    if let Some((drawing, page)) = flat_drawings::drawing(spec, model)? {
+        if outputs == Outputs::Counted {
+            return put(spec, &mut |_| Ok(()), files);
+        }
+        let picture = drawing.picture(&page);
+        return put(spec, &mut |out| picture.write(format, out), files);
+    }
     let tolerance = cx.tolerance()?;
     let sound = cx.sound(ModuleId::MAIN)?;
     let scene = scene_of(cx, spec, &sound)?;
@@ -87,7 +97,10 @@ fn written(cx: &mut Cx, spec: &PictureSpec, model: &str, files: &dyn Files, outp
         // What could go wrong did not; pixels are for files.
         return put(spec, &mut |_| Ok(()), files);
     }
-    let picture = Picture::new(&drawing, &settings, format);
+    let picture = match spec.views.as_slice() {
+        [] => Picture::new(&drawing, &settings, format),
+        views => picture_sheets::sheet(views, &drawing, &settings, format),
+    };
     put(spec, &mut |out| picture.write(format, out), files)
 }
 
@@ -173,6 +186,7 @@ fn draw(cx: &mut Cx, spec: &PictureSpec, things: &Things, context: &PictureConte
     }
     drawing.lines.retain(|line| line.points.len() > 1);
     shades::paint(cx, spec, &mut drawing)?;
+    picture_combs::add(spec, things, context, cx.unit().name, &mut drawing)?;
     names::add(spec, things, context, &mut drawing);
     Ok(drawing)
 }

@@ -164,7 +164,7 @@ impl<'r> Run<'r> {
         }
         if let Some(wanted) = self.task.picture {
             self.picture(wanted);
-        } else if !self.light && (self.is_sound() || self.task.keep_going) {
+        } else if !self.light && self.disk.outputs() != Outputs::Skipped && (self.is_sound() || self.task.keep_going) {
             self.write();
         }
         self.report.timings = Timings { parse: parsed - start, evaluate: evaluated - parsed, mesh: 0.0, write: clock() - evaluated };

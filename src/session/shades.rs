@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::base::origin::Origin;
 use crate::draw::color::{BACK, BAD_TO_GOOD, BELOW_TO_ABOVE, FRONT, LITTLE_TO_MUCH, NAMES};
-use crate::draw::faces::Show;
+use crate::draw::faces::{Bend, Show};
 use crate::draw::meshes::{self, Measure};
 use crate::draw::{Paint, Scale, Scene as Drawing, Sheet};
 use crate::io::files::fault::FormatFault;
@@ -22,14 +22,24 @@ fn word(spec: &PictureSpec) -> &str {
 
 /// Whether the shade is a property of surfaces, so that these are drawn instead of their meshes.
 pub(super) fn is_of_surfaces(spec: &PictureSpec) -> bool {
-    word(spec) == "curvature"
+    bend(spec).is_some()
+}
+
+/// The curvature that is shown, if any.
+fn bend(spec: &PictureSpec) -> Option<Bend> {
+    match word(spec) {
+        "curvature" => Some(Bend::Principal),
+        "mean" => Some(Bend::Mean),
+        "gauss" => Some(Bend::Gauss),
+        _ => None,
+    }
 }
 
 /// What the points of surfaces have to show.
 pub(super) fn of_faces(spec: &PictureSpec) -> Show {
-    match word(spec) {
-        "curvature" => Show::Curvature,
-        "zebra" => Show::Stripes,
+    match (word(spec), bend(spec)) {
+        (_, Some(bend)) => Show::Curvature(bend),
+        ("zebra" | "reflection" | "isophotes", _) => Show::Stripes,
         _ => Show::Light,
     }
 }
@@ -39,7 +49,7 @@ pub(super) fn mesh_sheets(spec: &PictureSpec, mesh: &Arc<Mesh>) -> Vec<Sheet> {
     match word(spec) {
         "quality" => vec![meshes::whole(mesh, Measure::Quality)],
         "size" => vec![meshes::whole(mesh, Measure::Size)],
-        "zebra" => meshes::by_face(mesh, true),
+        "zebra" | "reflection" | "isophotes" => meshes::by_face(mesh, true),
         "names" => meshes::by_face(mesh, false),
         _ => vec![meshes::whole(mesh, Measure::Light)],
     }
@@ -55,6 +65,8 @@ pub(super) fn paint(cx: &Cx, spec: &PictureSpec, drawing: &mut Drawing) -> Resul
         "names" => by_name(drawing),
         "side" => drawing.sheets.iter_mut().for_each(|s| s.paint = Paint::Sides(FRONT, BACK)),
         "zebra" => drawing.sheets.iter_mut().for_each(|s| s.paint = Paint::Zebra),
+        "reflection" => drawing.sheets.iter_mut().for_each(|s| s.paint = Paint::Reflections),
+        "isophotes" => drawing.sheets.iter_mut().for_each(|s| s.paint = Paint::Isophotes),
         "quality" => {
             needs(drawing, of, "`shade: quality` colours the elements of a mesh, and none is drawn", "draw a mesh")?;
             drawing.scale = Some(Scale { title: "quality".to_owned(), unit: String::new(), low: 0.0, high: 1.0, ramp: BAD_TO_GOOD });
@@ -67,18 +79,28 @@ pub(super) fn paint(cx: &Cx, spec: &PictureSpec, drawing: &mut Drawing) -> Resul
             let high = if high > low { high } else { low + 1.0 };
             drawing.scale = Some(Scale { title: "longest side".to_owned(), unit: unit.to_owned(), low, high, ramp: LITTLE_TO_MUCH });
         }
-        "curvature" => {
-            needs(drawing, of, "`shade: curvature` colours surfaces, and none is drawn", "draw a surface or a shell")?;
-            let mut sizes: Vec<f64> = values(drawing).map(f64::abs).collect();
-            sizes.sort_by(f64::total_cmp);
-            let most = sizes.get(((sizes.len() as f64 - 1.0) * MOST_PLACES) as usize).copied().unwrap_or(0.0);
-            // A plane has no curvature; its scale is from −1 to 1.
-            let most = if most > f64::from(f32::EPSILON) / drawn_size(drawing) { most } else { 1.0 };
-            let unit = format!("1/{unit}");
-            drawing.scale = Some(Scale { title: "curvature".to_owned(), unit, low: -most, high: most, ramp: BELOW_TO_ABOVE });
-        }
+        "curvature" | "mean" | "gauss" => of_curvature(spec, drawing, of, unit)?,
         _ => {}
     }
+    Ok(())
+}
+
+/// The scale of curvatures, as far to either side of zero as nearly all places are.
+fn of_curvature(spec: &PictureSpec, drawing: &mut Drawing, of: Origin, unit: &str) -> Result<(), Halt> {
+    needs(drawing, of, &format!("`shade: {}` colours surfaces, and none is drawn", word(spec)), "draw a surface or a shell")?;
+    let mut sizes: Vec<f64> = values(drawing).map(f64::abs).collect();
+    sizes.sort_by(f64::total_cmp);
+    let most = sizes.get(((sizes.len() as f64 - 1.0) * MOST_PLACES) as usize).copied().unwrap_or(0.0);
+    let (title, power) = match bend(spec) {
+        Some(Bend::Gauss) => ("Gauss curvature", 2),
+        Some(Bend::Mean) => ("mean curvature", 1),
+        _ => ("curvature", 1),
+    };
+    // A plane has no curvature; its scale is from −1 to 1.
+    let least = f64::from(f32::EPSILON) / crate::base::math::powi(drawn_size(drawing), power);
+    let most = if most > least { most } else { 1.0 };
+    let unit = if power == 1 { format!("1/{unit}") } else { format!("1/{unit}{power}") };
+    drawing.scale = Some(Scale { title: title.to_owned(), unit, low: -most, high: most, ramp: BELOW_TO_ABOVE });
     Ok(())
 }
 

@@ -12,6 +12,8 @@ pub enum Outputs {
     Written,
     /// They are only counted: `loft check`.
     Counted,
+    /// They are not made: a page shows the model.
+    Skipped,
 }
 
 /// The files of one run. Outputs are staged by [`Files::write`] and stand when they are committed.

@@ -45,7 +45,8 @@ pub fn grammar() -> String {
                 coloured(&words(true), "keyword.declaration.loft"),
                 coloured(&words(false), "keyword.control.loft"),
                 coloured(&SIGNS, "keyword.operator.word.loft"),
-                coloured(&CONSTANTS, "constant.language.loft"),
+                // These are no names of fields: before a colon they are values too.
+                { "match": format!("{NO_FIELD}{}", word(&one_of(CONSTANTS.to_vec()))), "name": "constant.language.loft" },
                 { "match": format!(r"{}(?=\s*\()", word(&one_of(functions))), "name": "support.function.loft" },
                 { "match": format!(r"{NAME}(?=\s*\()"), "name": "entity.name.function.loft" },
                 { "match": format!(r"{}(?=\s*:)", word(&one_of(settings))), "name": "support.type.property-name.loft" },

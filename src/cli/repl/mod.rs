@@ -8,6 +8,7 @@ mod palette;
 mod script;
 mod sixel;
 mod typed;
+mod viewing;
 
 use std::io::{IsTerminal, Read};
 use std::path::Path;
@@ -28,6 +29,7 @@ use crate::session::notebook::{Answer, Notebook, Part};
 use helper::Line;
 pub use script::transcript;
 use typed::Typed;
+use viewing::Viewing;
 
 /// Explores a model.
 pub const COMMAND: Command = Command { name: "repl", about: "Explore a model: define, change and ask", arguments, run };
@@ -121,7 +123,11 @@ fn from_pipe(mut notebook: Notebook, terminal: &Terminal) -> Exit {
     let mut exit = Exit::Fine;
     for entry in script::entries(&text) {
         notebook.watch(interrupt::entry_job());
-        let answer = notebook.enter(&entry);
+        let mut answer = notebook.enter(&entry);
+        if answer.view {
+            answer.parts.push(Part::Text(viewing::WITHOUT_TERMINAL.to_owned()));
+            answer.failed = true;
+        }
         print(&answer, terminal, false);
         if answer.failed {
             exit = Exit::Errors;
@@ -168,6 +174,7 @@ fn on_terminal(mut notebook: Notebook, terminal: &Terminal) -> Exit {
     notebook.edit_with(Box::new(edited));
     terminal.print(GREETING);
     let (mut way, mut typed) = (None, Typed::default());
+    let mut viewing: Option<Viewing> = None;
     loop {
         let columns = editor.dimensions().map_or(usize::MAX, |(columns, _)| usize::from(columns).saturating_sub(PROMPT.len()));
         if let Some(line) = editor.helper_mut() {
@@ -197,6 +204,12 @@ fn on_terminal(mut notebook: Notebook, terminal: &Terminal) -> Exit {
                 let answer = with_progress(&job, watched, || notebook.enter(&entry));
                 print(&answer, terminal, true);
                 show_pictures(&answer, terminal, &mut way, &mut typed);
+                match (&viewing, answer.view) {
+                    (Some(page), true) => page.open(terminal),
+                    (None, true) => viewing = Viewing::start(&notebook, terminal),
+                    (Some(page), false) => page.follow(&notebook),
+                    (None, false) => {}
+                }
                 if answer.quit {
                     return Exit::Fine;
                 }

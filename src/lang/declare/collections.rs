@@ -12,11 +12,11 @@ use crate::lang::eval::coerce::flatten_into;
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::faults::member_name;
 use crate::lang::eval::halt::Halt;
-use crate::lang::eval::later;
 use crate::lang::eval::machine::{Code, Gather};
 use crate::lang::eval::room::flat_len;
 use crate::lang::eval::scene::each_once;
 use crate::lang::eval::std::imprint::pieces;
+use crate::lang::eval::unbound;
 use crate::lang::syntax::ast;
 use crate::lang::syntax::ast::{ClauseWord, Declaration, Expr, ExprId, For, Keyword, MeshClause};
 use crate::lang::syntax::scopes::bound;
@@ -75,9 +75,12 @@ fn members_of(keyword: Keyword) -> (&'static str, fn(&Value) -> bool) {
                     | Value::Vector(..)
                     | Value::Node(_)
                     | Value::Network(_)
+                    | Value::Drawing(_)
             )
         }),
-        Keyword::Export => ("meshes, curves, surfaces or records", |v| !matches!(v, Value::None | Value::Module(_) | Value::Plane(_))),
+        Keyword::Export => {
+            ("meshes, curves, surfaces or records", |v| !matches!(v, Value::None | Value::Module(_) | Value::Plane(_) | Value::Drawing(_)))
+        }
         _ => ("things with geometry", |v| {
             !matches!(
                 v,
@@ -91,6 +94,7 @@ fn members_of(keyword: Keyword) -> (&'static str, fn(&Value) -> bool) {
                     | Value::Module(_)
                     | Value::Table(_)
                     | Value::Plane(_)
+                    | Value::Drawing(_)
             )
         }),
     }
@@ -224,7 +228,7 @@ impl Cx<'_> {
 
     /// Things of a collection, nested lists flattened, each of a kind that may be there.
     pub(crate) fn things(&mut self, code: Code<'_>, things: &[ExprId], keyword: Keyword) -> Result<Vec<(Value, Origin)>, Halt> {
-        self.things_for(code, things, keyword, later::keyword_word(keyword))
+        self.things_for(code, things, keyword, unbound::keyword_word(keyword))
     }
 
     /// The same, with the word for what the things are for.

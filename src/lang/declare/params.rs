@@ -174,7 +174,8 @@ impl Cx<'_> {
         }
     }
 
-    fn literal_value(&self, nodes: &[Node], id: ExprId) -> Option<Value> {
+    /// The value of an expression that is a literal.
+    pub(crate) fn literal_value(&self, nodes: &[Node], id: ExprId) -> Option<Value> {
         Some(match &nodes[id.index()].expr {
             Expr::Number(x) if x.is_finite() => Value::number(*x),
             Expr::Quantity(x, unit) => Value::Number(units::quantity(*x, unit, self.program.unit)?),

@@ -17,6 +17,9 @@ use crate::lang::values::plans::{PICTURE_SIZE, PictureSpec, Show};
 use crate::lang::values::settings;
 use crate::lang::values::value::Value;
 
+/// Most views on one sheet.
+const MOST_VIEWS: usize = 16;
+
 fn flag(settings: &[Resolved], key: &str) -> Option<bool> {
     match find(settings, key)?.value {
         Value::Bool(b) => Some(b),
@@ -58,6 +61,7 @@ impl Cx<'_> {
         gather.done()?;
         let resolved = resolved.unwrap_or_default();
         let view = self.view(code, settings, &resolved)?;
+        let views = self.views(code, settings, &resolved)?;
         let size = (pixels(&resolved, "width", PICTURE_SIZE.0), pixels(&resolved, "height", PICTURE_SIZE.1));
         self.page(code, settings, size)?;
         let word = |key: &str| match find(&resolved, key) {
@@ -77,6 +81,7 @@ impl Cx<'_> {
             axes: is("axes"),
             ruler: is("ruler"),
             legend: is("legend"),
+            combs: is("combs"),
         };
         let (path, path_origin) = path.unwrap_or_default();
         let shade = word("shade");
@@ -88,6 +93,7 @@ impl Cx<'_> {
             path,
             path_origin,
             view,
+            views,
             size,
             shade,
             zoom: zoom.unwrap_or_default(),
@@ -123,6 +129,36 @@ impl Cx<'_> {
             return Err(self.error(code, "E306", text, code.span(id), "the eye looks along this").help("a direction across it").stop());
         }
         Ok(view)
+    }
+
+    /// The views of `views:`; E305 beside `view` or `up`, E306 for none, too many, or a direction without length.
+    fn views(&mut self, code: Code<'_>, settings: &[ast::SettingEntry], resolved: &[Resolved]) -> Result<Vec<(String, View)>, Halt> {
+        let place = |cx: &Self, key: &str| settings.iter().find(|s| cx.program.names.text(s.key) == key).map(|s| s.value);
+        let (Some(id), Some(found)) = (place(self, "views"), find(resolved, "views")) else { return Ok(Vec::new()) };
+        if let Some((key, other)) = ["view", "up"].iter().find_map(|key| Some((*key, place(self, key)?))) {
+            let text = format!("`views` or `{key}`, not both");
+            return Err(self.error(code, "E305", text, code.span(other), "beside `views`").stop());
+        }
+        let perspective = flag(resolved, "perspective").unwrap_or(false);
+        let mut out = Vec::new();
+        for k in 0..found.value.len().unwrap_or(0) {
+            let value = found.value.item(k).unwrap_or_default();
+            let view = match &value {
+                Value::Word(word) => View::named(word),
+                Value::Vector(eye, _) => eye.try_normalize().map(|_| View { eye: *eye, up: None, perspective }),
+                _ => None,
+            };
+            let Some(view) = view else {
+                let text = "a view is a direction, got one without length";
+                return Err(self.error(code, "E306", text, code.span(id), "no length").stop());
+            };
+            out.push((self.show(&value), View { perspective, ..view }));
+        }
+        if !(1..=MOST_VIEWS).contains(&out.len()) {
+            let text = format!("a sheet has 1 to {MOST_VIEWS} views, got {}", out.len());
+            return Err(self.error(code, "E306", text, code.span(id), format!("{} given", out.len())).stop());
+        }
+        Ok(out)
     }
 
     /// E306 for more pixels than a picture may have.

@@ -148,9 +148,9 @@ codes! {
     now "E643", "guide-order-differs", "guides meet sections in different orders";
     now "W644", "section-scaled", "a section was scaled to its guides";
     now "W651", "grid-uneven", "the points of a grid are unevenly spaced";
-    later "E652", "pole-tangent-parallel", "tangents at a pole are parallel";
-    later "E653", "corner-tangent-parallel", "tangents at a corner are parallel";
-    later "E654", "border-not-resolved", "a border cannot be resolved";
+    now "E652", "pole-tangent-parallel", "tangents at a pole are parallel";
+    now "E653", "corner-tangent-parallel", "tangents at a corner are parallel";
+    now "E654", "border-not-resolved", "a border cannot be resolved";
     now "E655", "plane-not-flat", "the boundary of a plane is not flat";
     now "E656", "shell-not-closed", "a measure needs a closed shell";
     now "E657", "surfaces-coincide", "surfaces run along each other";
@@ -174,6 +174,8 @@ codes! {
     now "E675", "points-over-points", "scattered points lie above one another";
     now "E676", "no-net", "a surface has no B-spline form of its own";
     now "N677", "near-its-curves", "a surface deviates from its curves within a limit";
+    now "W678", "noise-understated", "points scatter more than was stated";
+    now "W679", "point-off", "a point is far off the run of its neighbours";
     now "W701", "rule-decides-nothing", "a rule has no effect";
     now "E702", "counts-differ", "counts differ on opposite sides";
     now "E703", "count-too-coarse", "a count is too coarse for a limit";

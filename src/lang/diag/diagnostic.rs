@@ -1,9 +1,13 @@
 //! Diagnostics: what is said about a script, with places in it.
 
+use std::cell::RefCell;
 use std::sync::{Arc, OnceLock};
+
+use glam::DVec3;
 
 use crate::base::fault::{Code, Edit, Fault, Report, Say, Severity, Subject};
 use crate::base::limits::REPORTS_TOLD;
+use crate::base::origin::Origin;
 use crate::lang::diag::span::Span;
 
 crate::ids! {
@@ -41,6 +45,43 @@ pub struct Diagnostic {
     pub more: usize,
     /// Those of them that say something else, where all are wanted; equal ones and what is beyond the limit are only counted.
     pub folded: Vec<Diagnostic>,
+    /// Where in space it is, and the first length that it speaks of (the width of a gap), model units; for pictures.
+    pub spot: Spot,
+}
+
+/// What a report says of space.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Spot {
+    /// Points that its words name.
+    pub points: Vec<DVec3>,
+    /// The first length that they name.
+    pub length: Option<f64>,
+}
+
+/// Speaks as another one does and keeps what it was asked to say of space.
+struct SpotRecorder<'s> {
+    say: &'s dyn Say,
+    spot: RefCell<Spot>,
+}
+
+impl Say for SpotRecorder<'_> {
+    fn name(&self, origin: Origin) -> String {
+        self.say.name(origin)
+    }
+
+    fn length(&self, length: f64) -> String {
+        self.spot.borrow_mut().length.get_or_insert(length);
+        self.say.length(length)
+    }
+
+    fn points(&self, places: &[DVec3]) -> Vec<String> {
+        self.spot.borrow_mut().points.extend(places);
+        self.say.points(places)
+    }
+
+    fn angle(&self, radians: f64) -> String {
+        self.say.angle(radians)
+    }
 }
 
 impl Diagnostic {
@@ -55,6 +96,7 @@ impl Diagnostic {
             fixes: Vec::new(),
             more: 0,
             folded: Vec::new(),
+            spot: Spot::default(),
         }
     }
 
@@ -69,13 +111,15 @@ impl Diagnostic {
             fixes: Vec::new(),
             more: 0,
             folded: Vec::new(),
+            spot: Spot::default(),
         }
     }
 
     /// The one bridge from the kernel: `find` turns subjects into places, `say` speaks of entities and quantities as
     /// the user does. With no subject found, the label falls back to the call. Labels on one place are joined.
     pub fn from_fault(fault: &Fault, find: impl Fn(Subject) -> Option<(FileId, Span)>, say: &dyn Say) -> Self {
-        let Report { message, labels: subjects, help, notes, edits } = fault.describe(say);
+        let say = SpotRecorder { say, spot: RefCell::default() };
+        let Report { message, labels: subjects, help, notes, edits } = fault.describe(&say);
         let fix = |(subject, edit)| find(subject).map(|(file, span)| Fix { file, span, edit });
         let fixes = edits.into_iter().filter_map(fix).collect();
         let mut labels: Vec<Label> = Vec::with_capacity(subjects.len());
@@ -90,7 +134,8 @@ impl Diagnostic {
         if labels.is_empty() {
             labels.extend(find(Subject::Call).map(|(file, span)| Label { file, span, text: "here".to_owned() }));
         }
-        Self { code: fault.code(), message, labels, help, notes, fixes, more: 0, folded: Vec::new() }
+        let spot = say.spot.into_inner();
+        Self { code: fault.code(), message, labels, help, notes, fixes, more: 0, folded: Vec::new(), spot }
     }
 
     /// With one more label.

@@ -4,7 +4,6 @@ use crate::lang::diag::span::Span;
 use crate::lang::eval::coerce::accepts;
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
-use crate::lang::eval::later;
 use crate::lang::eval::machine::Code;
 use crate::lang::eval::misspelt::{Among, Unknown};
 use crate::lang::eval::room::LIST_COST;
@@ -69,9 +68,6 @@ impl Cx<'_> {
     #[cold]
     pub(crate) fn no_field(&mut self, code: Code<'_>, value: &Value, name: Name, span: Span) -> Halt {
         let text = self.program.names.text(name).to_owned();
-        if later::is_function(&text) {
-            return self.error(code, "E230", format!("`{text}` is not in this version"), span, "a later version has it").stop();
-        }
         let kind = self.kind(value);
         let fields: Vec<String> = match value {
             Value::Record(r) => r.keys.iter().map(|k| self.program.names.text(*k).to_owned()).collect(),

@@ -321,6 +321,7 @@ fn plain(ty: Ty, value: &Value) -> bool {
             | (Ty::Table, Value::Table(_))
             | (Ty::Module, Value::Module(_))
             | (Ty::Network, Value::Network(_))
+            | (Ty::Drawing, Value::Drawing(_))
     )
 }
 

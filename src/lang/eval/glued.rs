@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use crate::base::fault::Fault;
 use crate::base::work::Once;
+use crate::hydrostatics::body::Body;
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
 use crate::lang::eval::scene::Scene;
@@ -24,6 +25,7 @@ pub struct Glued {
     /// What there is to say of it where it is declared.
     pub said: Vec<Fault>,
     solid: Once<Solid>,
+    body: Once<Arc<Body>>,
 }
 
 impl Glued {
@@ -31,6 +33,11 @@ impl Glued {
     pub fn faces(&self) -> Vec<(Surface, bool)> {
         let face = |(id, other): &(SurfaceId, bool)| (self.scene.model.surfaces[id.index()].surface.clone(), *other);
         self.shell.surfaces.iter().map(face).collect()
+    }
+
+    /// It as a body in water, made by whoever asks first.
+    pub fn body(&self, make: impl FnOnce() -> Result<Body, Halt>) -> Result<Arc<Body>, Halt> {
+        self.body.try_get(|| make().map(Arc::new))
     }
 
     /// What it encloses; of a closed one only.
@@ -75,7 +82,7 @@ impl Cx<'_> {
             let scene = Scene::of(self, module, &shell.surfaces)?;
             let mut said = Vec::new();
             let built = scene.shell(shell, &tolerance, &mut said)?;
-            Ok(Arc::new(Glued { scene, shell: built, said, solid: Once::default() }))
+            Ok(Arc::new(Glued { scene, shell: built, said, solid: Once::default(), body: Once::default() }))
         })
     }
 

@@ -70,6 +70,7 @@ impl Cx<'_> {
             Value::Table(_) => "table".into(),
             Value::Module(m) => self.machine.modules.get(m.index()).map_or_else(String::new, |m| m.label.clone()),
             Value::Network(_) => "network".into(),
+            Value::Drawing(drawing) => drawing.words().into(),
         }
     }
 

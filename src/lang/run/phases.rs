@@ -103,7 +103,7 @@ impl Cx<'_> {
         let file = self.machine.at(module).file;
         for again in found.iter().skip(1) {
             let (first, second) = (script.declarations.keyword_span(found[0] as usize), script.declarations.keyword_span(*again as usize));
-            let word = crate::lang::eval::later::keyword_word(keyword);
+            let word = crate::lang::eval::unbound::keyword_word(keyword);
             let diagnostic = Diagnostic::new("E202", format!("`{word}` may be declared only once"), file, second, "again here").label(
                 file,
                 first,

@@ -90,7 +90,7 @@ impl Cx<'_> {
         let value = self.value_of(name)?;
         let module = self.machine.modules.first()?;
         let index = module.find(self.program.names.find(name)?)?;
-        let word = crate::lang::eval::later::keyword_word(module.script.declarations.keyword(index as usize));
+        let word = crate::lang::eval::unbound::keyword_word(module.script.declarations.keyword(index as usize));
         let about = self.describe(&value);
         Some(if about.is_empty() { format!("{word} {name}") } else { format!("{word} {name}: {about}") })
     }

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use crate::draw::Drawing;
 use crate::lang::values::table::Table;
 use crate::lang::values::types::Ty;
 use crate::lang::values::units;
@@ -55,6 +56,8 @@ quantities! {
     Volume = Dim::VOLUME,
     /// A mass in kg.
     Mass = Dim::MASS,
+    /// A density in kg a cubic model unit.
+    Density = Dim { length: -3, angle: 0, mass: 1 },
 }
 
 /// An angle in **radians** (values hold degrees; this converts).
@@ -147,6 +150,13 @@ convert! {
     Arc<Plane>: Ty::Plane, Value::Plane(p) => p, self => Value::Plane(self);
     Arc<Record>: Ty::Record, Value::Record(r) => r, self => Value::Record(self);
     Arc<Table>: Ty::Table, Value::Table(t) => t, self => Value::Table(self);
+}
+
+impl IntoValue for Drawing {
+    const TY: Ty = Ty::Drawing;
+    fn into_value(self) -> Value {
+        Value::Drawing(Arc::new(self))
+    }
 }
 
 impl FromValue for Value {

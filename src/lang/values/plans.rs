@@ -139,6 +139,8 @@ pub struct PictureSpec {
     pub path_origin: Origin,
     /// Where it is seen from.
     pub view: View,
+    /// Several views on one sheet, each with its name; empty for one.
+    pub views: Vec<(String, View)>,
     /// Pixels across and down.
     pub size: (u32, u32),
     /// `shade:` as a word.
@@ -162,6 +164,7 @@ impl PictureSpec {
             path: path.to_owned(),
             path_origin: Origin::NONE,
             view,
+            views: Vec::new(),
             size: PICTURE_SIZE,
             shade: None,
             zoom: Vec::new(),
@@ -189,6 +192,8 @@ pub struct Show {
     pub ruler: Option<bool>,
     /// What colours and lines mean.
     pub legend: Option<bool>,
+    /// Curvature combs on curves.
+    pub combs: Option<bool>,
 }
 
 /// Pixels of a picture that says nothing of its size.

@@ -17,7 +17,8 @@ pub const FILE_UNITS: &[&str] = &["um", "mm", "cm", "m", "km", "inch", "ft"];
 pub const DECK_ELEMENTS: &[&str] = &crate::io::ELEMENT_NAMES;
 
 /// Words of `shade:`.
-pub const SHADES: &[&str] = &["plain", "names", "side", "quality", "size", "zebra", "curvature"];
+pub const SHADES: &[&str] =
+    &["plain", "names", "side", "quality", "size", "zebra", "reflection", "isophotes", "curvature", "mean", "gauss"];
 /// Words of `view:`.
 pub const VIEWS: &[&str] = &{
     let mut words = [""; crate::draw::VIEWS.len()];
@@ -128,7 +129,13 @@ pub const EXPORT: &[Setting] = &[
         ty: Ty::Choice(SHELLS),
         range: &[],
     },
-    Setting { key: "units", docs: "Unit of lengths in the file.", default: "the model's", ty: Ty::Choice(FILE_UNITS), range: &[] },
+    Setting {
+        key: "units",
+        docs: "Unit of lengths in the file; GLB is in metres and 3MF in millimetres.",
+        default: "the model's",
+        ty: Ty::Choice(FILE_UNITS),
+        range: &[],
+    },
 ];
 
 /// `import "file" ( … ) as name`; in this order.
@@ -160,6 +167,13 @@ pub const PICTURE: &[Setting] = &[
         range: &[],
     },
     Setting {
+        key: "views",
+        docs: "Several views on one sheet, each as for `view`, 16 at most.",
+        default: "one view",
+        ty: Ty::List(&Ty::OneOf(&[Ty::Choice(VIEWS), Ty::Direction])),
+        range: &[],
+    },
+    Setting {
         key: "up",
         docs: "Direction that is up in the picture.",
         default: "z, in `top` and `bottom` y",
@@ -174,7 +188,8 @@ pub const PICTURE: &[Setting] = &[
         key: "shade",
         docs: "What the colours of faces show: light only (`plain`), the surface (`names`), the side of the normal (`side`), \
                quality or longest side of elements (`quality`, `size`), reflected stripes that break where the tangent plane does \
-               (`zebra`), the larger principal curvature (`curvature`).",
+               (`zebra`), reflected parallel lamps (`reflection`), bands of equal angle between normal and z (`isophotes`), the larger principal curvature \
+               (`curvature`), the mean or the Gauss curvature (`mean`, `gauss`).",
         default: "plain",
         ty: Ty::Choice(SHADES),
         range: &[],
@@ -191,6 +206,13 @@ pub const PICTURE: &[Setting] = &[
         key: "network",
         docs: "The model's curves and nodes are drawn as well.",
         default: "whether `network` is among the things",
+        ty: Ty::Bool,
+        range: &[],
+    },
+    Setting {
+        key: "combs",
+        docs: "Curvature combs stand on the curves that are drawn: teeth away from the centre of curvature, as long as the curvature is large.",
+        default: "false",
         ty: Ty::Bool,
         range: &[],
     },

@@ -72,6 +72,8 @@ pub enum Ty {
     Module,
     /// The network of a script.
     Network,
+    /// A plot or a lines plan.
+    Drawing,
     /// A list of these; a range is a list of whole numbers. See [`Ty::is_thing`] for what a list of things takes.
     List(&'static Ty),
     /// All remaining positional arguments, nested lists flattened.
@@ -119,6 +121,7 @@ impl Ty {
             Self::Part => "a part".into(),
             Self::Module => "a module".into(),
             Self::Network => "the network".into(),
+            Self::Drawing => "a drawing".into(),
             Self::List(Self::Any) => "a list".into(),
             Self::List(of) | Self::Rest(of) => format!("a list of {}", plural(&of.words())),
             Self::Optional(of) => format!("{} or none", of.words()),
@@ -333,6 +336,7 @@ impl Value {
             Self::Table(_) => Ty::Table,
             Self::Module(_) => Ty::Module,
             Self::Network(_) => Ty::Network,
+            Self::Drawing(_) => Ty::Drawing,
         }
     }
 }

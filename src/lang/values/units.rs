@@ -50,6 +50,8 @@ const BEYOND_UNITS: f64 = 1e15;
 
 /// The default model unit.
 pub const MILLIMETRE: LengthUnit = LENGTHS[1];
+/// Centimetres.
+pub const CENTIMETRE: LengthUnit = LENGTHS[2];
 
 /// The unit of length of that name.
 pub fn length_unit(name: &str) -> Option<LengthUnit> {

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use crate::base::origin::Origin;
+use crate::draw::Drawing;
 use crate::lang::values::part::PartValue;
 use crate::lang::values::table::Table;
 use crate::lang::words::names::Name;
@@ -267,6 +268,8 @@ pub enum Value {
     Module(ModuleId),
     /// The network of a script: `network`.
     Network(ModuleId),
+    /// A plot or a lines plan, for `picture`.
+    Drawing(Arc<Drawing>),
 }
 
 impl Value {

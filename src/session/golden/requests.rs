@@ -9,6 +9,7 @@ use super::line_builder::{LineBuilder, line, yes};
 use super::values::Value;
 use super::words::{Measure, unit_of};
 use crate::base::origin::Origin;
+use crate::draw::View;
 use crate::lang::eval::context::Cx;
 use crate::lang::values::plans::{CheckResult, ExportSpec, MeshSpec, PictureSpec, Show};
 use crate::lang::values::units::{degrees, unit_text};
@@ -110,6 +111,7 @@ fn picture(cx: &mut Cx, details: &Details, spec: &PictureSpec) -> super::line::L
         .put("eye", direction(spec.view.eye))
         .maybe("up", spec.view.up.map(direction))
         .maybe("view", spec.view.perspective.then(|| Value::Word("perspective".to_owned())))
+        .maybe("views", views(&spec.views))
         .maybe("shade", spec.shade.as_ref().map(|s| Value::Word(s.0.to_string())))
         .maybe("zoom", names(cx, details, &spec.zoom))
         .maybe("title", spec.title.as_ref().map(|t| Value::Word(t.to_string())))
@@ -118,9 +120,15 @@ fn picture(cx: &mut Cx, details: &Details, spec: &PictureSpec) -> super::line::L
         .0
 }
 
+/// The views of a sheet by their names.
+fn views(views: &[(String, View)]) -> Option<Value> {
+    let names: Vec<&str> = views.iter().map(|view| view.0.as_str()).collect();
+    (!names.is_empty()).then(|| Value::Word(names.join(", ")))
+}
+
 /// What is switched on and off.
 fn show(show: &Show) -> Option<Value> {
-    let Show { elements, borders, network, labels, axes, ruler, legend } = *show;
+    let Show { elements, borders, network, labels, axes, ruler, legend, combs } = *show;
     let all = [
         ("elements", elements),
         ("borders", borders),
@@ -129,6 +137,7 @@ fn show(show: &Show) -> Option<Value> {
         ("axes", axes),
         ("ruler", ruler),
         ("legend", legend),
+        ("combs", combs),
     ];
     let said: Vec<String> = all.iter().filter_map(|(word, is)| is.map(|is| format!("{word} {}", yes(is)))).collect();
     (!said.is_empty()).then(|| Value::Word(said.join(", ")))

@@ -147,6 +147,7 @@ const WRITTEN: Fields = &[
     field("eye", Kind::List(Measure::Ratio)),
     field("up", Kind::List(Measure::Ratio)),
     field("view", Kind::Word),
+    field("views", Kind::Word),
     field("shade", Kind::Word),
     field("zoom", Kind::Word),
     field("title", Kind::Word),

@@ -38,7 +38,12 @@ pub const COMMANDS: &[Command] = &[
     Command { word: "redo", takes: "", docs: "Redoes the last undone change", run: |n, _| n.back(false) },
     Command { word: "set", takes: "PARAM=VALUE", docs: "Gives a param another value", run: Notebook::set },
     Command { word: "mesh", takes: "NAME", docs: "Builds a mesh and shows its counts and quality", run: Notebook::mesh },
-    Command { word: "view", takes: "", docs: "The model in a browser: comes with `loft view`, not in this version", run: |_, _| not_yet() },
+    Command {
+        word: "view",
+        takes: "",
+        docs: "The model in a browser; the page follows the session",
+        run: |_, _| Answer { view: true, ..Answer::default() },
+    },
     Command { word: "run", takes: "", docs: "Runs the whole model and writes its files", run: Notebook::whole_run },
     Command { word: "time", takes: "", docs: "How long the last entry took and what was reused", run: Notebook::time },
     Command {
@@ -267,12 +272,6 @@ impl Notebook {
             Err(error) => Answer::failure(format!("cannot write {}: {error}", path.display())),
         }
     }
-}
-
-fn not_yet() -> Answer {
-    Answer::failure(
-        "E230 × `:view` is not in this version\n  help: it comes with `loft view`; `loft render MODEL -o picture.png` draws the model now",
-    )
 }
 
 fn unquoted(text: &str) -> &str {

@@ -54,6 +54,8 @@ pub struct Answer {
     pub quit: bool,
     /// It was interrupted.
     pub stopped: bool,
+    /// The model is to be shown in a browser.
+    pub view: bool,
 }
 
 impl Answer {

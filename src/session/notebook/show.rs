@@ -3,10 +3,9 @@
 use super::edit::shown_table;
 use super::{Answer, Notebook, Part, ended};
 use crate::lang::run::symbols::{Condition, Symbol, about_mesh};
-use crate::lang::syntax::ast::{DeclarationKind, Keyword};
-use crate::lang::syntax::parse;
 use crate::lang::values::value::Value;
 use crate::session::live::Depth;
+use crate::session::view::write_back::defaults_of;
 
 impl Notebook {
     fn symbol(&self, name: &str) -> Result<usize, Answer> {
@@ -203,17 +202,10 @@ impl Notebook {
     }
 
     /// The script with the params that were set as their defaults.
-    pub(super) fn saved_text(&self) -> String {
+    pub fn saved_text(&self) -> String {
         let mut text = ended(&self.now.state.text);
         for (name, value) in &self.now.state.sets {
-            let mut names = crate::lang::words::names::Names::default();
-            let (script, _) = parse(&text, crate::lang::diag::diagnostic::FileId(0), &mut names);
-            let param =
-                script.declarations.with_keyword(Keyword::Param).map(|at| script.declarations.whole(at)).find_map(|d| match &d.kind {
-                    DeclarationKind::Param { bound, value, .. } if names.text(bound.name) == name => Some(d.nodes.get(value.index())?.span),
-                    _ => None,
-                });
-            if let Some(span) = param {
+            if let Some(span) = defaults_of(&text, name).first() {
                 text.replace_range(span.start as usize..span.end as usize, value);
             }
         }

@@ -1,9 +1,10 @@
-//! Roundings between surfaces.
+//! Roundings and smooth strips between surfaces.
 
 use crate::base::fault::{Say, ValueFault};
 use crate::builtins;
 use crate::lang::eval::std::surfaces::reported;
 use crate::lang::values::conversions::{Length, Point};
+use crate::surface::blended::bridge::bridge;
 use crate::surface::{Surface, rolling};
 
 builtins! {
@@ -38,5 +39,29 @@ builtins! {
         let (origin, tolerance) = (cx.origin(), cx.tolerance()?);
         let parts = rolling([&a, &b], radius.0, keep.map(|p| p.0), origin, &tolerance)?;
         parts.into_iter().map(|part| reported(cx, part, &[])).collect()
+    };
+
+    /// A strip between two surfaces that continues both smoothly.
+    ///
+    /// It fills a gap: its borders are the two borders that face each other, found by the distances of places along them, with no gap, and it has
+    /// the tangent planes of both surfaces all along them. Across the strip it is a cubic that is run through at an even speed. u runs along the
+    /// border of the first surface, v from there to the second one; its ends are the cubics between the ends of the borders. Both surfaces
+    /// are untrimmed B-splines (`grid`, `fit`, `nurbs_surface`, `bezier_surface`, or what `nurbs(s)` gives), else E306.
+    /// ```loft
+    /// surface low = grid([for j in 0..3: [for i in 0..4: (i * 1m, j * 1m, 0)]])
+    /// surface high = grid([for j in 4..7: [for i in 0..4: (i * 1m, j * 1m, 1m)]])
+    /// surface strip = bridge(low, high)
+    /// check connection(low, strip).angle < 0.001deg
+    /// check connection(strip, high).gap < 1um
+    /// ```
+    fn bridge(
+        /// One surface.
+        a: Surface,
+        /// The other one.
+        b: Surface,
+    ) -> Surface = |cx, a, b| {
+        let (origin, tolerance) = (cx.origin(), cx.tolerance()?);
+        let strip = bridge([&a, &b], origin, &tolerance)?;
+        reported(cx, strip, &[])
     };
 }

@@ -1,4 +1,4 @@
-//! Surfaces over nets of curves: Coons and transfinite.
+//! Surfaces over nets of curves: Coons, Hermite blended Coons and transfinite.
 
 use crate::base::fault::ValueFault;
 use crate::base::tolerance::Tolerance;
@@ -9,6 +9,8 @@ use crate::lang::eval::std::surfaces::reported;
 use crate::lang::values::conversions::{Point, Rest};
 use crate::network::{self, Chain, ChainFlow, FlowKind};
 use crate::surface::blended::coons::{self, BlendMethod, CoonsSettings, Grid};
+use crate::surface::blended::hermite;
+use crate::surface::blended::twists::Twist;
 use crate::surface::faults::LoopFault;
 use crate::surface::{Reparam, Surface};
 
@@ -31,6 +33,18 @@ crate::choices! {
         Linear = "linear",
         /// Cubically between neighbours, so that the surface is C1 across inner curves.
         Cubic = "cubic",
+    }
+}
+
+crate::choices! {
+    /// Mixed derivatives ∂uv at the nodes of a net.
+    pub enum TwistWord {
+        /// They are 0: the surface is flat about its corners, by a few percent of a radius.
+        Zero = "zero",
+        /// As bilinearly blended Coons patches have them (Adini).
+        Adini = "adini",
+        /// As curves have that are carried along their neighbours, turned and scaled: best at poles and for round shapes.
+        Similar = "similar",
     }
 }
 
@@ -93,7 +107,7 @@ fn over_grid(cx: &mut Cx, curves: Curves, said: &FlowSettings) -> Result<Surface
     let blend = match said.method {
         BlendMethod::Linear => Some("linear"),
         BlendMethod::Cubic => Some("cubic"),
-        BlendMethod::Coons | BlendMethod::Lagrange | BlendMethod::Gordon => None,
+        BlendMethod::Coons | BlendMethod::Lagrange | BlendMethod::Gordon | BlendMethod::Hermite => None,
     };
     if let Some(word) = blend.filter(|_| flow.kind == FlowKind::UniformTrilateral) {
         let range = "auto where three curves have no pole: they are blended in one way".to_owned();
@@ -106,6 +120,28 @@ fn over_grid(cx: &mut Cx, curves: Curves, said: &FlowSettings) -> Result<Surface
     };
     let settings = CoonsSettings { method: said.method, reparam, origin: cx.origin() };
     let (surface, notes) = coons::build(&Grid { chains: &chains, flow: &flow, poles }, &settings, &tolerance)?;
+    reported(cx, surface, &notes)
+}
+
+/// A Hermite blended surface over a grid of curves. Of three curves without a word about it the corner whose sides are nearest in length is
+/// the pole.
+fn hermite_over(cx: &mut Cx, curves: Curves, pole: Option<Point>, closed: bool, twist: TwistWord) -> Result<Surface, Halt> {
+    let tolerance = cx.tolerance()?;
+    curves.each_once(&tolerance)?;
+    let (chains, along_u, along_v) = curves.listed();
+    let mut options = ChainFlow { along_u, along_v, pole: pole.map(|p| p.0), closed };
+    let (mut flow, mut nodes) = network::of_chains(&chains, &options, &tolerance)?;
+    if flow.kind == FlowKind::UniformTrilateral {
+        options.pole = hermite::default_pole(&chains, &flow, &tolerance);
+        (flow, nodes) = network::of_chains(&chains, &options, &tolerance)?;
+    }
+    let poles = (flow.poles.0.map(|n| nodes[n]), flow.poles.1.map(|n| nodes[n]));
+    let twist = match twist {
+        TwistWord::Zero => Twist::Zero,
+        TwistWord::Adini => Twist::Adini,
+        TwistWord::Similar => Twist::Similar,
+    };
+    let (surface, notes) = hermite::build(&Grid { chains: &chains, flow: &flow, poles }, twist, cx.origin(), &tolerance)?;
     reported(cx, surface, &notes)
 }
 
@@ -146,6 +182,38 @@ builtins! {
             BlendWord::Cubic => BlendMethod::Cubic,
         };
         over_grid(cx, Curves { row, u, v }, &FlowSettings { pole, closed, reparam, method })
+    };
+
+    /// Hermite blended Coons patch through a loop of curves, or a net of patches.
+    ///
+    /// Curves come in any order and direction, as `coons` takes them, and the surface contains every curve. Across a curve each cell has the
+    /// derivatives that the crossing curves have at the nodes, so nets are C1 across their curves whatever the widths of the cells.
+    /// Three curves are a triangle: one corner is the pole, to which a side shrinks. `twist: similar` takes much of the flatness
+    /// about corners away: of the octant of a sphere below it leaves 0.44 % of the radius, `zero` 4.2 % and `adini` 4.9 %.
+    /// ```loft
+    /// point P = (0, 0, 1m)
+    /// curve west = arc(center: (0, 0, 0), start: P, angle: 90deg, normal: (0, 1, 0))
+    /// curve south = arc(center: (0, 0, 0), start: P, angle: 90deg, normal: (-1, 0, 0))
+    /// curve equator = arc(center: (0, 0, 0), start: west.end, angle: 90deg, normal: (0, 0, 1))
+    /// surface octant = hermite(west, south, equator, pole: P, twist: similar)
+    /// check norm(octant.at(50%, 50%) - (0, 0, 0)) == 1m within 5mm
+    /// ```
+    fn hermite(
+        /// Boundary curves and inner curves.
+        curves: Rest<Chain>,
+        /// Those that run along u, where the curves alone do not decide.
+        u: Option<Vec<Chain>>,
+        /// Those that run along v.
+        v: Option<Vec<Chain>>,
+        /// The point to which a side shrinks; of three curves else the corner whose two sides are nearest to each other in length.
+        pole: Option<Point>,
+        /// Whether the surface closes in u, where the curves alone do not decide.
+        closed: bool = "false",
+        /// Mixed derivatives at the nodes. `adini`: the mean of the bilinear Coons patches round each node; `similar`: the mean of what
+        /// the cells round it say, where each curve is carried along the sides as its chord is.
+        twist: TwistWord = "zero",
+    ) -> Surface = |cx, row, u, v, pole, closed, twist| {
+        hermite_over(cx, Curves { row, u, v }, pole, closed, twist)
     };
 
     /// Transfinite surface through a grid of curves: one blend over the whole grid.

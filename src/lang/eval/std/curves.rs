@@ -7,7 +7,7 @@ use crate::base::math;
 use crate::base::tolerance::PARALLEL;
 use crate::builtins;
 use crate::geometry::construct::{build, fillet};
-use crate::geometry::{Curve, Ends, Kind};
+use crate::geometry::{Curve, Kind};
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
 use crate::lang::values::conversions::{Angle, Direction, FromValue, Length, Point};
@@ -79,10 +79,6 @@ impl ArcSaid {
             _ => Err(Self::missing("`center:`, `start:` and `angle:` together")),
         }
     }
-}
-
-pub(crate) fn ends(tangent: Option<Direction>, argument: &'static str) -> Result<Ends, Halt> {
-    tangent.map_or(Ok(Ends::Natural), |t| unit(t.0, argument).map(Ends::Clamped))
 }
 
 /// What can be offset.

@@ -1,5 +1,7 @@
 //! How faces join along the edges they share.
 
+use std::sync::Arc;
+
 use crate::base::bbox::Box3;
 use crate::base::fault::{Say, ValueFault};
 use crate::base::tolerance::Tolerance;
@@ -7,12 +9,90 @@ use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
 use crate::lang::eval::scene::Scene;
 use crate::lang::eval::std::kinds::{EdgeOf, EdgeOrSurface, Faces};
-use crate::lang::values::conversions::{Angle, Length};
-use crate::lang::values::value::Value;
+use crate::lang::values::conversions::{Angle, FromValue, Length};
+use crate::lang::values::types::Ty;
+use crate::lang::values::value::{Dim, Quantity, Record, Value};
 use crate::model::fault::ShellFault;
 use crate::model::{Contact, EdgeId, SurfaceId};
 use crate::surface::Surface;
 use crate::{builtins, fields};
+
+/// Dimension of a curvature.
+const CURVATURE: Dim = Dim { length: -1, angle: 0, mass: 0 };
+/// What is told of each joint.
+const QUANTITIES: [[&str; 5]; 3] = [
+    ["gap", "gap_min", "gap_max", "gap_mean", "gap_at"],
+    ["angle", "angle_min", "angle_max", "angle_mean", "angle_at"],
+    ["curvature", "curvature_min", "curvature_max", "curvature_mean", "curvature_at"],
+];
+
+/// The records that `connection` gives.
+#[derive(Clone, Debug)]
+pub struct Joints(Vec<Arc<Record>>);
+
+impl FromValue for Joints {
+    const TY: Ty = Ty::List(&Ty::Record);
+    fn from_value(value: Value) -> Option<Self> {
+        Vec::from_value(value).map(Self)
+    }
+}
+
+impl Joints {
+    /// A field of each joint with its length, where it is known; E211 for other records.
+    fn each(&self, cx: &Cx, key: &str) -> Result<Vec<(Quantity, f64, Arc<Record>)>, Halt> {
+        let field = |record: &Arc<Record>, key: &str| cx.program.names.find(key).and_then(|key| record.get(key)).cloned();
+        let mut out = Vec::new();
+        for record in &self.0 {
+            match (field(record, key), field(record, "length")) {
+                (Some(Value::Number(q)), Some(Value::Number(length))) => out.push((q, length.value, Arc::clone(record))),
+                (Some(Value::None), Some(_)) => {}
+                _ => {
+                    let (wanted, found) = ("the joints that `connection` gives", "other records".to_owned());
+                    return Err(ValueFault::WrongKind { argument: "of", wanted, found }.into());
+                }
+            }
+        }
+        Ok(out)
+    }
+
+    /// The largest of a field, with its joint.
+    fn largest(&self, cx: &Cx, key: &str) -> Result<Option<(Quantity, Arc<Record>)>, Halt> {
+        let found = self.each(cx, key)?.into_iter().map(|(q, _, record)| (q, record));
+        Ok(found.reduce(|a, b| if b.0.value > a.0.value { b } else { a }))
+    }
+
+    /// The least of a field.
+    fn least(&self, cx: &Cx, key: &str) -> Result<Value, Halt> {
+        let found = self.each(cx, key)?.into_iter().map(|(q, ..)| q);
+        Ok(found.reduce(|a, b| if b.value < a.value { b } else { a }).map_or(Value::None, Value::Number))
+    }
+
+    /// Ranges of the least and of the largest values over the joints, the mean by length, and where the largest is.
+    fn summary(&self, cx: &mut Cx) -> Result<Vec<Value>, Halt> {
+        let mut out = Vec::new();
+        for [name, min, max, mean, at] in QUANTITIES {
+            let most = self.largest(cx, max)?;
+            let place = most.as_ref().and_then(|(_, record)| record.get(cx.program.names.find(at)?).cloned());
+            let number = |found: Option<(Quantity, Arc<Record>)>| found.map_or(Value::None, |(q, _)| Value::Number(q));
+            let parts = self.each(cx, mean)?;
+            let whole: f64 = parts.iter().map(|part| part.1).sum();
+            let sum: f64 = parts.iter().map(|(q, length, _)| q.value * length).sum();
+            let mean = parts.first().filter(|_| whole > 0.0).map_or(Value::None, |(q, ..)| Value::quantity(sum / whole, q.dim));
+            let (lowest, highest, lowest_max) = (self.least(cx, min)?, number(self.largest(cx, min)?), self.least(cx, max)?);
+            out.push(cx.record([
+                ("of", Value::text(name)),
+                ("joints", Value::number(self.0.len() as f64)),
+                ("min_from", lowest),
+                ("min_to", highest),
+                ("max_from", lowest_max),
+                ("max_to", number(most)),
+                ("mean", mean),
+                ("at", place.unwrap_or_default()),
+            ]));
+        }
+        Ok(out)
+    }
+}
 
 /// The segments that faces of two lists share; without a second list all that the first one's share.
 fn shared(scene: &Scene, a: &[Surface], b: Option<&[Surface]>, near: f64, tolerance: &Tolerance) -> Result<Vec<Contact>, Halt> {
@@ -47,6 +127,8 @@ fn record_of(cx: &mut Cx, scene: &Scene, contact: &Contact, tolerance: &Toleranc
     };
     let (a, b) = (name(cx, contact.faces.0), name(cx, contact.faces.1));
     let angle = |pick: fn(&crate::model::Spread) -> f64| contact.angle.as_ref().map_or(Value::None, |s| Value::angle(pick(s)));
+    let curvature =
+        |pick: fn(&crate::model::Spread) -> f64| contact.curvature.as_ref().map_or(Value::None, |s| Value::quantity(pick(s), CURVATURE));
     let g1 = contact.angle.map_or(Value::None, |s| Value::Bool(s.max <= tolerance.angle));
     cx.record([
         ("a", a),
@@ -61,6 +143,10 @@ fn record_of(cx: &mut Cx, scene: &Scene, contact: &Contact, tolerance: &Toleranc
         ("angle_max", angle(|s| s.max)),
         ("angle_mean", angle(|s| s.mean)),
         ("angle_at", contact.angle.map_or(Value::None, |s| Value::point(s.at))),
+        ("curvature_min", curvature(|s| s.min)),
+        ("curvature_max", curvature(|s| s.max)),
+        ("curvature_mean", curvature(|s| s.mean)),
+        ("curvature_at", contact.curvature.map_or(Value::None, |s| Value::point(s.at))),
         ("c0", Value::Bool(contact.gap.max <= tolerance.point)),
         ("g1", g1),
     ])
@@ -93,19 +179,22 @@ builtins! {
     /// How the faces of two surfaces join along the edges they share.
     ///
     /// One record for each stretch that they share: by the faces of the first list, then along the border of each. `gap` is the distance of the first face's border from the second one's, `angle` the angle between the normals,
-    /// 0 to 90 degrees whatever their sides; of each the least, the largest, the mean and the place of the largest. They are
+    /// 0 to 90 degrees whatever their sides, `curvature` the size of the difference of their curvatures across the edge, seen from one side; of each the least, the largest, the mean and the place of the largest. They are
     /// taken at 200 or more equally spaced points and refined round the extremes. `c0` says that the gap stays within
     /// the tolerance, `g1` that the angle is below that of a kink. With one argument all inner edges are listed. Where more
     /// than two faces meet, each pair has a record.
     /// Of a shell these are its edges between two faces, glued as the shell glues them. Faces that share no edge are E618;
-    /// `within:` counts borders up to this distance apart as shared.
+    /// `within:` counts borders up to this distance apart as shared. `connection(a, b).gap`, `.angle` and `.curvature` are the largest
+    /// of all records, `.summary` their ranges.
     /// ```loft
     /// curve south = line((0, 0, 0), (4m, 0, 0))
     /// surface wall = extrude(south, by: (0, 0, 3m))
     /// surface slab = extrude(south, by: (0, 2m, 0))
     /// let join = connection(wall, slab)[0]
     /// let angle = join.angle_max // => 90deg
+    /// check connection(wall, slab).gap <= 1um
     /// report connection(wall, slab)
+    /// report connection(wall, slab).summary
     /// ```
     fn connection(
         /// A surface, a shell, or several.
@@ -159,4 +248,19 @@ fields! {
     fn angle(of: EdgeOf) -> Option<Angle> = |cx, of| {
         Ok(along(cx, &of)?.iter().filter_map(|c| c.angle).map(|a| a.max).reduce(f64::max).map(Angle))
     };
+    /// The largest gap of the joints that `connection` gives; `none` of none.
+    fn gap(of: Joints) -> Option<Quantity> = |cx, of| Ok(of.largest(cx, "gap_max")?.map(|found| found.0));
+    /// The largest angle between normals at the joints that `connection` gives.
+    ///
+    /// `none` where no face has a normal there.
+    fn angle(of: Joints) -> Option<Quantity> = |cx, of| Ok(of.largest(cx, "angle_max")?.map(|found| found.0));
+    /// The largest jump of curvature across joints of `connection`, 1/length.
+    ///
+    /// `none` where no face has a curvature there.
+    fn curvature(of: Joints) -> Option<Quantity> = |cx, of| Ok(of.largest(cx, "curvature_max")?.map(|found| found.0));
+    /// The joints of `connection` as a group: gap, angle and jump of curvature.
+    ///
+    /// Over all joints: the range of the least values (`min_from`, `min_to`), the range of the largest (`max_from`, `max_to`), the mean by length, and where
+    /// the largest is (`at`).
+    fn summary(of: Joints) -> Vec<Value> = |cx, of| of.summary(cx);
 }

@@ -9,23 +9,35 @@ pub mod curve_nets;
 pub mod curves;
 pub mod data;
 pub mod distances;
+pub mod drawings;
 pub mod elementary;
+pub mod fairs;
 pub mod fits;
+pub mod floating;
+pub mod hull_lines;
+pub mod hydrostatics;
 pub mod imprint;
 pub mod joins;
 pub mod kinds;
+mod lines_plans;
 pub mod lists;
 pub mod measures;
 pub mod mesh;
 pub mod nets;
 pub mod network;
 pub mod numbers;
+mod offsets;
+mod offsets_grid;
+mod offsets_lines;
+mod offsets_points;
+pub mod offsets_tables;
 pub mod parts;
 pub mod point_nets;
 pub mod roundings;
 pub mod rows;
 pub mod scatters;
 pub mod splines;
+pub mod stability;
 pub mod surfaces;
 pub mod sweeps;
 pub mod text;
@@ -111,7 +123,12 @@ pub const BUILTINS: &[&[Builtin]] = &[
     data::BUILTINS,
     curves::BUILTINS,
     splines::BUILTINS,
+    fairs::BUILTINS,
     fits::BUILTINS,
+    hull_lines::BUILTINS,
+    offsets_tables::BUILTINS,
+    hydrostatics::BUILTINS,
+    stability::BUILTINS,
     roundings::BUILTINS,
     network::BUILTINS,
     curve_nets::BUILTINS,
@@ -129,6 +146,7 @@ pub const BUILTINS: &[&[Builtin]] = &[
     joins::BUILTINS,
     mesh::BUILTINS,
     measures::BUILTINS,
+    drawings::BUILTINS,
     parts::BUILTINS,
 ];
 

@@ -2,15 +2,16 @@
 
 use glam::DVec3;
 
-use crate::base::fault::ValueFault;
+use crate::base::fault::{Say, ValueFault};
 use crate::base::tolerance::WHOLE_NUMBER;
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
 use crate::lang::eval::std::kinds::{CurveOrSurface, LinkOf, Meeting, NetworkOf, ThingsOrCurve};
-use crate::lang::values::conversions::{Length, NodePlace, Point, Station};
+use crate::lang::values::conversions::{Length, NodePlace, Point, Rest, Station};
 use crate::lang::values::value::Value;
 use crate::network::{Chain, LinkId};
 use crate::surface::Nearest;
+use crate::surface::points::even_points::{MOST, even_points};
 use crate::{builtins, fields};
 
 /// Fraction of a curve at a fraction or length; both must lie on the curve.
@@ -158,6 +159,40 @@ builtins! {
         }
         cx.room(count)?;
         Ok((0..count).map(|k| Point(of.point(k as f64 / (count - 1) as f64))).collect())
+    };
+
+    /// Points at even arc lengths on curves: as many on each, as few as do.
+    ///
+    /// They are the fewest with which the cubic spline through the points of each curve, `spline(points, start: bessel, end: bessel)`,
+    /// is within `within:` of it, looked at in three places of each span. Kinks are among the points; there one spline ends and the
+    /// next begins. Opposite borders of a region get the same number so. If 2000 are too few that is E654.
+    /// ```loft
+    /// curve a = arc((0, 0), (4m, 0), through: (2m, 2m))
+    /// curve b = line((0, 3m), (4m, 3m))
+    /// let both = even_points(a, b, within: 0.1mm)
+    /// check len(both[0]) == len(both[1])
+    /// check distance(a.at(3%), spline(both[0], start: bessel, end: bessel)) <= 0.1mm
+    /// ```
+    fn even_points(
+        /// One or more curves.
+        curves: Rest<Chain>,
+        /// How far the splines may be from the curves, above 0.
+        within: Length,
+        /// How many points at least, 2 to 2000.
+        least: usize = "2",
+    ) -> Vec<Vec<Point>> = |cx, curves, within, least| {
+        if within.0 <= 0.0 || !within.0.is_finite() {
+            let (found, range) = (cx.length(within.0), "above 0".to_owned());
+            return Err(ValueFault::OutsideRange { argument: "within", found, range }.into());
+        }
+        if !(2..=MOST).contains(&least) {
+            let range = format!("2 to {MOST}");
+            return Err(ValueFault::OutsideRange { argument: "least", found: least.to_string(), range }.into());
+        }
+        let tolerance = cx.tolerance()?;
+        cx.room(curves.0.len().saturating_mul(MOST))?;
+        let found = even_points(&curves.0, within.0, least, &tolerance)?;
+        Ok(found.into_iter().map(|row| row.into_iter().map(Point).collect()).collect())
     };
 }
 

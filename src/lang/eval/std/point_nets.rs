@@ -4,11 +4,81 @@ use glam::DVec3;
 
 use crate::base::fault::ValueFault;
 use crate::builtins;
+use crate::geometry::Ends;
+use crate::lang::eval::halt::Halt;
+use crate::lang::eval::std::curves::unit;
+use crate::lang::eval::std::splines::{SpacingWord, SplineEnd};
 use crate::lang::eval::std::surfaces::{reported, rows};
-use crate::lang::values::conversions::{Length, Point};
+use crate::lang::values::conversions::{Direction, FromValue, Length, Point};
+use crate::lang::values::types::Ty;
+use crate::lang::values::value::Value;
 use crate::surface::Surface;
 use crate::surface::points::control_net::{self, Net};
-use crate::surface::points::interpolate;
+use crate::surface::points::interpolate::{self, BorderEnd, BorderEnds, CornerTwists};
+
+/// How a surface leaves a border of its grid.
+#[derive(Clone, Debug)]
+pub enum NetEnd {
+    /// Alike everywhere.
+    One(SplineEnd),
+    /// In a direction at each point of the border.
+    Each(Vec<Direction>),
+}
+
+impl FromValue for NetEnd {
+    const TY: Ty = Ty::OneOf(&[Ty::List(&Ty::Direction), Ty::Choice(&["natural", "bessel"]), Ty::Direction]);
+    fn from_value(value: Value) -> Option<Self> {
+        if matches!(value, Value::List(_)) { Vec::from_value(value).map(Self::Each) } else { SplineEnd::from_value(value).map(Self::One) }
+    }
+}
+
+impl NetEnd {
+    /// E306 for a direction without a length.
+    pub(crate) fn border(self, argument: &'static str) -> Result<BorderEnd, Halt> {
+        Ok(match self {
+            Self::One(end) => BorderEnd::Alike(end.ends(argument)?),
+            // One direction may arrive as a list of it.
+            Self::Each(all) if all.len() == 1 => BorderEnd::Alike(Ends::Clamped(unit(all[0].0, argument)?)),
+            Self::Each(all) => BorderEnd::Along(all.into_iter().map(|along| unit(along.0, argument)).collect::<Result<_, _>>()?),
+        })
+    }
+}
+
+/// Twists at the corners of a grid.
+#[derive(Clone, Debug)]
+pub enum NetTwist {
+    /// `zero` or `adini`.
+    Word(CornerTwists),
+    /// One a corner.
+    Each(Vec<Point>),
+}
+
+impl FromValue for NetTwist {
+    const TY: Ty = Ty::OneOf(&[Ty::List(&Ty::Point), Ty::Choice(&["zero", "adini"])]);
+    fn from_value(value: Value) -> Option<Self> {
+        match value {
+            Value::Word(word) if &*word == "adini" => Some(Self::Word(CornerTwists::Adini)),
+            Value::Word(_) => Some(Self::Word(CornerTwists::Zero)),
+            list => Vec::from_value(list).map(Self::Each),
+        }
+    }
+}
+
+impl NetTwist {
+    /// E306 for other than four vectors.
+    pub(crate) fn twists(self) -> Result<CornerTwists, Halt> {
+        match self {
+            Self::Word(twists) => Ok(twists),
+            Self::Each(all) => match all[..] {
+                [a, b, c, d] => Ok(CornerTwists::Given([a.0, b.0, c.0, d.0])),
+                _ => {
+                    let (found, range) = (format!("{} vectors", all.len()), "4, at (0, 0), (1, 0), (0, 1) and (1, 1)".to_owned());
+                    Err(ValueFault::OutsideRange { argument: "twist", found, range }.into())
+                }
+            },
+        }
+    }
+}
 
 builtins! {
     /// Bézier surface of a net of control points.
@@ -96,18 +166,47 @@ builtins! {
 
     /// Smooth surface through a grid of points.
     ///
-    /// Bicubic, twice continuously differentiable, natural at its border.
+    /// Bicubic, twice continuously differentiable. It leaves each border `natural`, without a bend across it, or `bessel`, as the
+    /// parabola through three points does, or in a direction, or in one for each point of the border. Parameters are mean chord lengths, or
+    /// `centripetal`, or `uniform`: then grids that have a row of points in common have the same border curve there, with no gap.
+    ///
+    /// Where no border is natural the corners have twists: those of parabolas along the border, none (`zero`), those of the Coons patches
+    /// of the corner cells (`adini`), or given ones: mixed derivatives over the parameters of the corner cell, each from 0 to 1.
     /// ```loft
-    /// surface ground = grid([for j in 0..4: [for i in 0..5: (i * 1m, j * 1m, sin(i * 60deg) * 200mm)]])
+    /// let points = [for j in 0..4: [for i in 0..5: (i * 1m, j * 1m, sin(i * 60deg) * 200mm)]]
+    /// surface ground = grid(points)
+    /// surface level = grid(points, start_u: (1, 0, 0), end_u: bessel, parameter: uniform)
+    /// let saddle = [for j in 0..4: [for i in 0..5: (i * 1m, j * 1m, i * j * 200mm)]]
+    /// let each = (0, 0, 200mm)
+    /// surface twisted = grid(saddle, start_u: bessel, end_u: bessel, start_v: bessel, end_v: bessel, twist: [each, each, each, each])
     /// ```
     fn grid(
         /// Rows of points along u, one row per v, all as long.
         points: Vec<Vec<Point>>,
-    ) -> Surface = |cx, points| {
+        /// How it leaves the first u: `natural`, `bessel`, a direction or one a row; natural when left out.
+        start_u: Option<NetEnd>,
+        /// How it arrives at the last u.
+        end_u: Option<NetEnd>,
+        /// How it leaves the first v.
+        start_v: Option<NetEnd>,
+        /// How it arrives at the last v.
+        end_v: Option<NetEnd>,
+        /// Spacing of the parameters.
+        parameter: SpacingWord = "chord",
+        /// Twists at the corners: `zero`, `adini`, or four vectors at (0, 0), (1, 0), (0, 1) and (1, 1); of parabolas when left out.
+        twist: Option<NetTwist>,
+    ) -> Surface = |cx, points, start_u, end_u, start_v, end_v, parameter, twist| {
         let points = rows(points);
         cx.seen(points.iter().flatten().copied());
         let tolerance = cx.tolerance()?;
-        let (surface, notes) = interpolate::grid(&points, cx.origin(), &tolerance)?;
+        let end = |end: Option<NetEnd>, argument| end.map_or(Ok(BorderEnd::Alike(Ends::Natural)), |end| end.border(argument));
+        let ends = BorderEnds {
+            u: [end(start_u, "start_u")?, end(end_u, "end_u")?],
+            v: [end(start_v, "start_v")?, end(end_v, "end_v")?],
+            spacing: parameter.spacing(),
+            twists: twist.map_or(Ok(CornerTwists::default()), NetTwist::twists)?,
+        };
+        let (surface, notes) = interpolate::grid_with(&points, &ends, cx.origin(), &tolerance)?;
         reported(cx, surface, &notes)
     };
 }

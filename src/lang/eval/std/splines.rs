@@ -6,41 +6,102 @@ use crate::base::fault::ValueFault;
 use crate::base::limits::HELIX_TURNS;
 use crate::base::tolerance::Tolerance;
 use crate::builtins;
-use crate::geometry::Spline;
+use crate::geometry::construct::spline::{Spacing, spaced};
 use crate::geometry::construct::{build, polynomial};
-use crate::lang::eval::std::curves::{CurveOrSurface, ends, places, unit, whole, with_notes};
+use crate::geometry::{Ends, Spline};
+use crate::lang::eval::halt::Halt;
+use crate::lang::eval::std::curves::{CurveOrSurface, places, unit, whole, with_notes};
 use crate::lang::eval::std::kinds::PointsOrSurface;
 use crate::lang::eval::std::surfaces::reported;
-use crate::lang::values::conversions::{Direction, Length, Point};
+use crate::lang::values::conversions::{Direction, FromValue, Length, Point};
+use crate::lang::values::types::Ty;
 use crate::lang::values::units::number_text;
 use crate::lang::values::value::Value;
 use crate::network::Chain;
 use crate::surface::offset;
 
+crate::choices! {
+    /// How the parameters of data follow from them.
+    pub enum SpacingWord {
+        /// As far apart as the points.
+        Chord = "chord",
+        /// The root of that.
+        Centripetal = "centripetal",
+        /// All alike.
+        Uniform = "uniform",
+    }
+}
+
+impl SpacingWord {
+    pub(crate) fn spacing(self) -> Spacing {
+        match self {
+            Self::Chord => Spacing::Chord,
+            Self::Centripetal => Spacing::Centripetal,
+            Self::Uniform => Spacing::Uniform,
+        }
+    }
+}
+
+/// How a spline leaves its end.
+#[derive(Clone, Copy, Debug)]
+pub enum SplineEnd {
+    /// `natural` or `bessel`.
+    Word(Ends),
+    /// A direction.
+    Along(DVec3),
+}
+
+impl FromValue for SplineEnd {
+    const TY: Ty = Ty::OneOf(&[Ty::Choice(&["natural", "bessel"]), Ty::Direction]);
+    fn from_value(value: Value) -> Option<Self> {
+        match value {
+            Value::Word(word) if &*word == "bessel" => Some(Self::Word(Ends::Bessel)),
+            Value::Word(_) => Some(Self::Word(Ends::Natural)),
+            Value::Vector(along, _) => Some(Self::Along(along)),
+            _ => None,
+        }
+    }
+}
+
+impl SplineEnd {
+    /// E306 for a direction without a length.
+    pub(crate) fn ends(self, argument: &'static str) -> Result<Ends, Halt> {
+        match self {
+            Self::Word(ends) => Ok(ends),
+            Self::Along(along) => unit(along, argument).map(Ends::Clamped),
+        }
+    }
+}
+
 builtins! {
     /// Smooth cubic spline through points.
     ///
-    /// Twice continuously differentiable, chord-length knots, natural ends unless tangents are given.
+    /// Twice continuously differentiable. Its ends are `natural`, without a bend, or `bessel`, as the parabola through three points
+    /// leaves them, or run in a direction. Parameters are chord lengths, their roots (`parameter: centripetal`, for points of
+    /// uneven distances) or whole numbers (`uniform`, where curves of as many points are to have the same knots).
     /// ```loft
     /// curve edge = spline([(0, 0), (1m, 0.2m), (2m, 0)], start: (1, 0, 0))
     /// ```
     fn spline(
         /// Points in order.
         points: Vec<Point>,
-        /// Direction at the first point.
-        start: Option<Direction>,
-        /// Direction at the last point.
-        end: Option<Direction>,
+        /// Direction at the first point, `natural` or `bessel`; natural when left out.
+        start: Option<SplineEnd>,
+        /// The same at the last point.
+        end: Option<SplineEnd>,
         /// Whether it returns smoothly to the first point.
         closed: bool = "false",
-    ) -> Chain = |cx, list, start, end, closed| {
+        /// Spacing of the parameters.
+        parameter: SpacingWord = "chord",
+    ) -> Chain = |cx, list, start, end, closed, parameter| {
         if let (true, Some(argument)) = (closed, start.map(|_| "start").or(end.map(|_| "end"))) {
             let (what, arguments) = ("end tangents or `closed: true`, not both", vec![argument, "closed"]);
             let example = "spline([A, B, C], start: (1, 0, 0)), or spline([A, B, C], closed: true)";
             return Err(ValueFault::Exclusive { function: "spline", what, arguments, example }.into());
         }
-        let settings = Spline { start: ends(start, "start")?, end: ends(end, "end")?, closed };
-        Ok(whole(build::spline(&places(list), &settings, cx.origin())?))
+        let end_of = |end: Option<SplineEnd>, argument| end.map_or(Ok(Ends::Natural), |end| end.ends(argument));
+        let settings = Spline { start: end_of(start, "start")?, end: end_of(end, "end")?, closed };
+        Ok(whole(spaced(&places(list), &settings, parameter.spacing(), cx.origin())?))
     };
 
     /// Bézier curve of its control points.

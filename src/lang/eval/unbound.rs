@@ -1,4 +1,4 @@
-//! Words of later versions: known, and refused by one error instead of being taken for a mistake.
+//! Names that nothing binds: words, or mistakes of one kind or another.
 
 use crate::lang::diag::span::Span;
 use crate::lang::eval::context::Cx;
@@ -12,20 +12,7 @@ use crate::lang::values::value::{ModuleId, Value};
 use crate::lang::words::elsewhere::instead;
 use crate::lang::words::names::Name;
 
-const FUNCTIONS: &[&str] = &["hermite", "hydrostatics"];
-
-/// Whether a later version has a function of this name.
-pub(crate) fn is_function(name: &str) -> bool {
-    FUNCTIONS.contains(&name)
-}
-
 impl Cx<'_> {
-    /// E230 at a place.
-    #[cold]
-    pub(crate) fn not_yet(&mut self, code: Code<'_>, what: &str, span: Span) -> Halt {
-        self.error(code, "E230", format!("{what} is not in this version"), span, "a later version has it").stop()
-    }
-
     /// A name that nothing binds: a word, `pi`, `network`, or a mistake.
     #[cold]
     pub(crate) fn unbound(&mut self, code: Code<'_>, id: ExprId, name: Name) -> Result<Value, Halt> {
@@ -53,13 +40,10 @@ impl Cx<'_> {
         Err(self.error(code, "E201", format!("`{text}` is not defined"), span, "no such name").stop())
     }
 
-    /// E201 or E230: a function that is none.
+    /// E201: a function that is none.
     #[cold]
     pub(crate) fn no_function(&mut self, code: Code<'_>, id: ExprId, name: Name, span: Span) -> Halt {
         let text = self.program.names.text(name).to_owned();
-        if is_function(&text) {
-            return self.not_yet(code, &format!("`{text}`"), span);
-        }
         if self.machine.at(code.module).is_broken(name) {
             return Halt::Broken;
         }
