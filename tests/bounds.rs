@@ -17,6 +17,8 @@ use lofting::model::{Model, SurfaceId};
 use lofting::network::{Chain, ChainFlow, Network, of_chains};
 use lofting::surface::blended::coons::{BlendMethod, CoonsSettings, Grid, build};
 use lofting::surface::blended::gordon::{CurveNet, Named as NamedNet, gordon};
+use lofting::surface::blended::hermite;
+use lofting::surface::blended::twists::Twist;
 use lofting::surface::core::plane;
 use lofting::surface::points::control_net::{Net, bezier, nurbs};
 use lofting::surface::swept::extrude;
@@ -56,8 +58,18 @@ fn spanned(chains: &[Chain], options: &ChainFlow, method: BlendMethod, reparam: 
     build(&Grid { chains, flow: &flow, poles }, &CoonsSettings { method, reparam, origin: Origin::NONE }, &tolerance()).unwrap().0
 }
 
+fn patched(chains: &[Chain], options: &ChainFlow, twist: Twist) -> Surface {
+    let (flow, nodes) = of_chains(chains, options, &tolerance()).unwrap();
+    let poles = (flow.poles.0.map(|n| nodes[n]), flow.poles.1.map(|n| nodes[n]));
+    hermite::build(&Grid { chains, flow: &flow, poles }, twist, Origin::NONE, &tolerance()).unwrap().0
+}
+
 /// A 3 × 3 grid of curves over a bumpy floor, unevenly spaced.
 fn net_of_curves(method: BlendMethod, reparam: Reparam) -> Surface {
+    spanned(&floor(), &ChainFlow::default(), method, reparam)
+}
+
+fn floor() -> Vec<Chain> {
     let at = |x: f64, y: f64| p(x, y, 0.4 * (x * 1.3).sin() * (y * 0.9).cos() + 0.1 * x * y);
     let lines = [0.0, 0.8, 3.0];
     let steps: Vec<f64> = (0..=6).map(|k| f64::from(k) / 2.0).collect();
@@ -65,7 +77,7 @@ fn net_of_curves(method: BlendMethod, reparam: Reparam) -> Surface {
         .map(|y| through(&steps.iter().copied().chain([0.8]).collect::<Vec<_>>().sorted().iter().map(|x| at(*x, y)).collect::<Vec<_>>()));
     let along_y = lines
         .map(|x| through(&steps.iter().copied().chain([0.8]).collect::<Vec<_>>().sorted().iter().map(|y| at(x, *y)).collect::<Vec<_>>()));
-    spanned(&[along_x, along_y].concat(), &ChainFlow::default(), method, reparam)
+    [along_x, along_y].concat()
 }
 
 /// Three rings crossed by four meridians, closed in u.
@@ -148,6 +160,9 @@ fn zoo() -> Vec<(&'static str, Surface)> {
         ("coons 3x3 linear", net_of_curves(BlendMethod::Coons, Reparam::Linear)),
         ("transfinite", net_of_curves(BlendMethod::Lagrange, Reparam::Smooth)),
         ("gordon", net_of_curves(BlendMethod::Gordon, Reparam::Smooth)),
+        ("hermite 3x3", patched(&floor(), &ChainFlow::default(), Twist::Similar)),
+        ("hermite 3x3 moved", patched(&floor(), &ChainFlow::default(), Twist::Adini).moved(&moved).flipped()),
+        ("hermite octant", patched(&great, &pole, Twist::Similar)),
         ("gordon moved", net_of_curves(BlendMethod::Gordon, Reparam::Smooth).moved(&moved).flipped()),
         ("gordon closed", vase()),
         ("skin", skinned()),

@@ -13,7 +13,7 @@ use lofting::session::json::report_text;
 use lofting::session::kept::Kept;
 use lofting::session::run::{Again, Outcome, Task, run, run_again};
 
-use crate::support::long::{root, sample, scripts};
+use crate::support::long::{quarter, root, sample, scripts};
 
 fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("cache-{name}"));
@@ -149,9 +149,19 @@ fn edited(text: &str) -> String {
     text
 }
 
-/// One script cold, warm and damaged, and where `edits` says so with lines moved and a number changed; how many meshes it has
-/// and how many results were found again.
-fn one_script((script, text): &(PathBuf, String), edits: bool, dice: &mut Dice) -> (usize, usize) {
+/// What a script goes through beside a cold and a warm run.
+#[derive(Clone, Copy, PartialEq)]
+enum Trial {
+    Nothing,
+    /// Lines moved, and a number changed.
+    Edits,
+    /// Damaged files.
+    Damage,
+    Both,
+}
+
+/// One script cold and warm, and what else is tried with it; how many meshes it has and how many results were found again.
+fn one_script((script, text): &(PathBuf, String), trial: Trial, dice: &mut Dice) -> (usize, usize) {
     let part = |name: Option<&std::ffi::OsStr>| name.unwrap().to_string_lossy().into_owned();
     let name = format!("{}-{}", part(script.parent().and_then(Path::file_name)), part(script.file_stem()));
     let (out, cache) = (folder(&format!("out-{name}")), folder(&format!("kept-{name}")));
@@ -161,34 +171,41 @@ fn one_script((script, text): &(PathBuf, String), edits: bool, dice: &mut Dice) 
     assert_eq!(cold.from_cache, 0, "{name}");
     let warm = process(script, text, &out, Some(&cache));
     same(&without, &warm, &format!("{name}, warm"));
-    if edits {
+    if matches!(trial, Trial::Edits | Trial::Both) {
         // Lines move, and with them every place that is told.
         let moved = format!("// A line above.\n{text}");
         same(&process(script, &moved, &out, None), &process(script, &moved, &out, Some(&cache)), &format!("{name}, moved"));
         let other = edited(text);
         same(&process(script, &other, &out, None), &process(script, &other, &out, Some(&cache)), &format!("{name}, edited"));
     }
-    damage(&cache, dice);
-    let damaged = process(script, text, &out, Some(&cache));
-    same(&without, &damaged, &format!("{name}, damaged"));
-    assert_eq!(damaged.from_cache, 0, "{name}: a damaged file was believed");
-    let again = process(script, text, &out, Some(&cache));
-    assert_eq!(again.from_cache, warm.from_cache, "{name}: what was damaged is written anew");
+    if matches!(trial, Trial::Damage | Trial::Both) {
+        damage(&cache, dice);
+        let damaged = process(script, text, &out, Some(&cache));
+        same(&without, &damaged, &format!("{name}, damaged"));
+        assert_eq!(damaged.from_cache, 0, "{name}: a damaged file was believed");
+        let again = process(script, text, &out, Some(&cache));
+        assert_eq!(again.from_cache, warm.from_cache, "{name}: what was damaged is written anew");
+    }
     (without.meshes, warm.from_cache)
 }
 
-/// Scripts of the project (a quarter of them in a short run) and one with a mesh of every shape. Examples, some of which are large, are
-/// not edited.
+/// Scripts of the project (a quarter of them in a short run) and one with a mesh of every shape. A quarter of them is edited, and of
+/// another quarter what is kept is damaged: an evaluation of all of them takes a minute.
 #[test]
 fn results_are_the_same_cold_warm_edited_and_damaged() {
     let chosen = sample(scripts(&["examples", "tests/golden"]), 3).into_iter().map(|path| root().join(path));
     let mut all: Vec<(PathBuf, String)> = chosen.map(|p| (p.clone(), fs::read_to_string(p).unwrap())).collect();
     all.push((root().join("tests/golden/shapes.loft"), SHAPES.to_owned()));
+    let trial = |path: &Path| match path.strip_prefix(root()).map(|path| quarter(path, 1)) {
+        _ if path.ends_with("shapes.loft") => Trial::Both,
+        Ok(0) => Trial::Edits,
+        Ok(1) => Trial::Damage,
+        _ => Trial::Nothing,
+    };
     let part = |parity: usize| {
         let mut dice = Dice(7 + parity as u64);
         let own = all.iter().skip(parity).step_by(2);
-        own.map(|script| one_script(script, !script.0.starts_with(root().join("examples")), &mut dice))
-            .fold((0, 0), |sum, one| (sum.0 + one.0, sum.1 + one.1))
+        own.map(|script| one_script(script, trial(&script.0), &mut dice)).fold((0, 0), |sum, one| (sum.0 + one.0, sum.1 + one.1))
     };
     let (a, b) = std::thread::scope(|scope| {
         let other = scope.spawn(|| part(1));

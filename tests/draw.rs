@@ -15,7 +15,15 @@ fn settings(width: usize, height: usize) -> Settings {
 
 fn sheet(points: &[[f64; 3]], triangles: &[[u32; 3]]) -> Sheet {
     let points = points.iter().map(|p| DVec3::from_array(*p)).collect();
-    Sheet { name: "s".into(), points, normals: Vec::new(), triangles: triangles.to_vec(), edges: Vec::new(), paint: Paint::Even(FACE) }
+    Sheet {
+        name: "s".into(),
+        points,
+        normals: Vec::new(),
+        triangles: triangles.to_vec(),
+        edges: Vec::new(),
+        paint: Paint::Even(FACE),
+        bends: Vec::new(),
+    }
 }
 
 fn square(side: f64, z: f64) -> Sheet {
@@ -107,7 +115,8 @@ fn ball(n: u32) -> Scene {
         .collect();
     let values = points.iter().map(|p| p.z as f32).collect();
     let edges = vec![0b111; triangles.len()];
-    let sheet = Sheet { name: "ball".into(), normals: points.clone(), points, triangles, edges, paint: Paint::OfPoints(values) };
+    let sheet =
+        Sheet { name: "ball".into(), normals: points.clone(), points, triangles, edges, paint: Paint::OfPoints(values), bends: Vec::new() };
     let scale =
         lofting::draw::Scale { title: "height".into(), unit: "m".into(), low: -1.0, high: 1.0, ramp: lofting::draw::color::LITTLE_TO_MUCH };
     let labels = (0..40).map(|k| {

@@ -16,7 +16,7 @@ use lofting::session::run::Outcome;
 use crate::support::script;
 
 /// Scripts that make `s`, each with how many edges it has.
-const KINDS: [(&str, usize, &str); 16] = [
+const KINDS: [(&str, usize, &str); 17] = [
     ("extrude", 4, "surface s = extrude(arc((0, 0, 0), (4m, 0, 0), through: (2m, 0, 1m)), by: (0, 3m, 0))"),
     ("tube", 3, "surface s = extrude(circle(center: (0, 0, 0), radius: 1m), by: (0, 0, 2m))"),
     ("cone", 4, "surface s = revolve(line((1m, 0, 0), (2m, 0, 2m)), axis: line((0, 0, 0), (0, 0, 1m)), angle: 200deg)"),
@@ -32,6 +32,12 @@ const KINDS: [(&str, usize, &str); 16] = [
         4,
         "curve a = arc((0, 0, 0), (4m, 0, 0), through: (2m, 0, 1m))\ncurve b = line((4m, 0, 0), (4m, 3m, 0))
 curve c = arc((4m, 3m, 0), (0, 3m, 0), through: (2m, 3m, 1.5m))\ncurve d = line((0, 3m, 0), (0, 0, 0))\nsurface s = coons(a, b, c, d)",
+    ),
+    (
+        "hermite",
+        3,
+        "curve a = arc((0, 0, 1m), (1m, 0, 0), through: (800mm, 0, 600mm))\ncurve b = arc((0, 0, 1m), (0, 1m, 0), through: (0, 800mm, 600mm))
+curve c = arc((1m, 0, 0), (0, 1m, 0), through: (800mm, 600mm, 0))\nsurface s = hermite(a, b, c, pole: (0, 0, 1m), twist: similar)",
     ),
     (
         "transfinite",

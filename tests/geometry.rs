@@ -114,7 +114,7 @@ fn spline_with_given_tangents() {
         assert!(curve.point(number(&sample["t"])).distance(point(&sample["point"])) < 1e-12);
     }
     close(curve.length(), number(&fit["arc_length"]), 1e-12, "length");
-    let how = Fit { start: Some(tangents[0]), end: Some(tangents[1]), ..Fit::default() };
+    let how = Fit { start: Some(Ends::Clamped(tangents[0])), end: Some(Ends::Clamped(tangents[1])), ..Fit::default() };
     let met = lofting::geometry::construct::fit_curve::fit(&points(&fit["data"]), &how, Origin::NONE).unwrap();
     let nurbs = met.to_nurbs(&lofting::base::tolerance::Tolerance::new(1e-6, 10.0)).unwrap();
     for (i, expected) in poles.iter().enumerate() {

@@ -149,7 +149,7 @@ fn doc_and_explain_answer_for_each_other() {
         assert!(!printed(&["doc", word]).contains("no word of the language"), "{word}");
     }
     assert_eq!(printed(&["doc", "W501"]), "loft: there is no code W501; did you mean E501?\n");
-    assert_eq!(printed(&["explain", "conos"]), "loft: no word of the language is called `conos`; did you mean cones or conic or coons?\n");
+    assert_eq!(printed(&["explain", "conos"]), "loft: no word of the language is called `conos`; did you mean cones or combs or conic?\n");
 }
 
 #[test]

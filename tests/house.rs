@@ -11,6 +11,7 @@ const FLOORS: &[(&str, u8)] = &[
     ("surface", 3),
     ("model", 4),
     ("mesh", 5),
+    ("hydrostatics", 5),
     ("io", 6),
     ("draw", 6),
     ("lang", 7),
@@ -78,6 +79,7 @@ const DOORS: &[(&str, &[&str])] = &[
     ("ryu", &["src/base/text.rs"]),
     ("unicode_width", &["src/base/text.rs"]),
     ("png", &["src/draw/"]),
+    ("zip", &["src/io/mesh_files/threemf.rs"]),
     ("pest", &["src/lang/syntax/"]),
     ("pest_derive", &["src/lang/syntax/"]),
     ("miette", &["src/lang/diag", "src/cli/"]),
@@ -87,6 +89,8 @@ const DOORS: &[(&str, &[&str])] = &[
     ("clap_complete", &["src/cli/"]),
     ("indicatif", &["src/cli/"]),
     ("ctrlc", &["src/cli/"]),
+    ("flate2", &["src/cli/view/"]),
+    ("getrandom", &["src/cli/view/gate.rs"]),
 ];
 
 /// What floors 0 to 7 never touch: the disk, the environment, the clock, threads of their own.
@@ -94,17 +98,18 @@ const OUTSIDE: &[&str] = &["std::fs", "std::env", "std::time", "println!", "epri
 
 /// Lines a floor may have, tests included; a higher number is a change of its own, with the reason.
 const CEILINGS: &[(&str, usize)] = &[
-    ("base", 4_650),
-    ("geometry", 6_100),
+    ("base", 4_700),
+    ("geometry", 6_300),
     ("network", 5_150),
-    ("surface", 28_300),
-    ("model", 6_900),
-    ("mesh", 31_200),
-    ("io", 17_200),
-    ("draw", 3_000),
-    ("lang", 30_250),
-    ("session", 12_000),
-    ("cli", 4_900),
+    ("surface", 30_200),
+    ("model", 7_100),
+    ("mesh", 31_300),
+    ("hydrostatics", 2_300),
+    ("io", 18_600),
+    ("draw", 4_400),
+    ("lang", 33_000),
+    ("session", 14_000),
+    ("cli", 7_800),
     ("library", 2_000),
 ];
 

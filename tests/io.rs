@@ -11,7 +11,7 @@ use lofting::io::files::loss::{Loss, Renamed};
 use lofting::io::formats::choice::format_for;
 use lofting::io::formats::list::FORMATS;
 use lofting::io::mesh_files::deck::{Deck, Encoding, Options};
-use lofting::io::mesh_files::format::Format;
+use lofting::io::mesh_files::format::{Format, Takes};
 use lofting::io::mesh_files::{obj_read, stl_read};
 use lofting::io::tables::{json, table, table_read, table_write};
 use lofting::mesh::{FaceRange, Group, Mesh};
@@ -74,6 +74,34 @@ fn add_mids(mesh: &mut Mesh) {
     mesh.nodes = nodes;
 }
 
+/// A cube of `n`³ cells about (n, n, n)/2 with shared nodes: six surfaces, a group of all faces.
+fn block(n: u32, quads: bool) -> Mesh {
+    let mut known = std::collections::BTreeMap::new();
+    let mut mesh = Mesh { name: "block".into(), order: 1, ..Mesh::default() };
+    for (axis, far) in [(0, false), (0, true), (1, false), (1, true), (2, false), (2, true)] {
+        let (t, q) = (mesh.triangles.len() as u32, mesh.quads.len() as u32);
+        for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
+            let [a, b, c, d] = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)].map(|(i, j)| {
+                let mut place = [0; 3];
+                (place[axis], place[(axis + 1) % 3], place[(axis + 2) % 3]) = (if far { n } else { 0 }, i, j);
+                *known.entry(place).or_insert_with(|| {
+                    mesh.nodes.push(DVec3::from_array(place.map(f64::from)));
+                    mesh.nodes.len() as u32 - 1
+                })
+            });
+            let [a, b, c, d] = if far { [a, b, c, d] } else { [a, d, c, b] };
+            if quads { mesh.quads.push([a, b, c, d]) } else { mesh.triangles.extend([[a, b, c], [a, c, d]]) }
+        }
+        let name = format!("side[{}]", 2 * axis + usize::from(far));
+        let (triangles, quads) = (t..mesh.triangles.len() as u32, q..mesh.quads.len() as u32);
+        mesh.groups.push(set(&mesh, &name, triangles.clone(), quads.clone()));
+        mesh.faces.push(FaceRange { name, triangles, quads, lines: 0..0 });
+    }
+    let (t, q) = (mesh.triangles.len() as u32, mesh.quads.len() as u32);
+    mesh.groups.push(set(&mesh, "skin & all", 0..t, 0..q));
+    mesh
+}
+
 fn write(format: &Format, mesh: &Mesh, options: &Options) -> (Vec<u8>, Vec<Loss>) {
     let deck = Deck { mesh, unit: "mm", options };
     format.check(Origin::NONE, &deck).unwrap();
@@ -95,8 +123,9 @@ fn text_of(path: &str, mesh: &Mesh) -> (String, Vec<Loss>) {
 #[test]
 fn every_format_writes_every_kind_of_mesh_the_same_on_any_number_of_threads() {
     // 20 000 cells are several blocks of records.
-    let meshes = [sheet(200, 100, true, 1), sheet(100, 100, false, 2), Mesh::default()];
-    for (format, mesh) in FORMATS.iter().flat_map(|format| meshes.iter().map(move |mesh| (format, mesh))) {
+    let meshes = [sheet(200, 100, true, 1), sheet(100, 100, false, 2), block(60, true), Mesh::default()];
+    let all = FORMATS.iter().flat_map(|format| meshes.iter().map(move |mesh| (format, mesh)));
+    for (format, mesh) in all.filter(|(format, mesh)| format.takes != Takes::Bodies || mesh.name != "sheet") {
         for encoding in format.encodings {
             let options = Options { encoding: Some(*encoding), ..Options::default() };
             let (first, losses) = write(format, mesh, &options);
@@ -236,7 +265,12 @@ fn settings_that_do_not_fit_are_errors() {
     assert!(String::from_utf8(bytes).unwrap().contains("TYPE=S4R, ELSET=left"));
     let metres = Options { units_per_file_unit: Some(1000.0), ..Options::default() };
     assert!(String::from_utf8(write(named("a.obj"), &mesh, &metres).0).unwrap().contains("v 0.002 0 "));
-    assert_eq!(format_for(Origin::NONE, "x.glb").err().map(|f| lofting::base::fault::Fault::from(f).code().0), Some("E230"));
+    assert_eq!(check("a.glb", Options { encoding: Some(Encoding::Text), ..Options::default() }).unwrap(), "GLB has no text encoding");
+    assert_eq!(
+        check("a.3mf", Options::default()).unwrap(),
+        "3MF holds closed bodies, and `sheet` has 6 edges of one face only, the first at (0.5, 0, 0.322109) mm"
+    );
+    assert_eq!(format_for(Origin::NONE, "x.gltf").err().map(|f| lofting::base::fault::Fault::from(f).code().0), Some("E230"));
     assert_eq!(format_for(Origin::NONE, "dir.x/mesh").err().map(|f| lofting::base::fault::Fault::from(f).code().0), Some("E804"));
 }
 
@@ -252,6 +286,7 @@ fn what_a_format_cannot_hold_is_said() {
     assert_eq!((count("a.stl", Encoding::Binary), count("a.stl", Encoding::Text)), (3, 3));
     assert_eq!((count("a.ply", Encoding::Binary), count("a.obj", Encoding::Text)), (2, 2));
     assert_eq!((count("a.vtu", Encoding::Binary), count("a.msh", Encoding::Text), count("a.inp", Encoding::Text)), (0, 0, 0));
+    assert_eq!(count("a.glb", Encoding::Binary), 2);
     // The names of surfaces are lost without a warning.
     let mut plain = sheet(4, 2, true, 1);
     plain.groups.truncate(2);
@@ -265,6 +300,85 @@ fn what_a_format_cannot_hold_is_said() {
     let (text, losses) = write(named("a.bdf"), &mesh, &rods);
     assert!(losses.contains(&Loss::LeftOut("the mid nodes of line elements of order 2".into())));
     assert!(String::from_utf8(text).unwrap().contains("CROD    1       1       1       2\n"));
+}
+
+/// The JSON and the binary chunk of a GLB.
+fn chunks(bytes: &[u8]) -> (serde_json::Value, &[u8]) {
+    let word = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()) as usize;
+    assert!(bytes.starts_with(b"glTF") && word(4) == 2 && word(8) == bytes.len() && &bytes[16..20] == b"JSON");
+    let text = word(12);
+    let rest = &bytes[20 + text..];
+    assert!(rest.is_empty() || word(20 + text) == rest.len() - 8 && &rest[4..8] == b"BIN\0");
+    (serde_json::from_slice(&bytes[20..20 + text]).unwrap(), rest.get(8..).unwrap_or_default())
+}
+
+#[test]
+fn glb_has_a_primitive_a_material_and_a_name_for_each_surface_and_curve() {
+    let mut mesh = sheet(4, 2, true, 1);
+    mesh.nodes.iter_mut().for_each(|p| *p += DVec3::new(1e7, 2e7, 3e7));
+    let colors = vec![("right[1]".to_owned(), [1.0, 0.5, 0.0])];
+    let (bytes, losses) = write(named("a.glb"), &mesh, &Options { colors, ..Options::default() });
+    assert!(losses.iter().all(|loss| !matches!(loss, Loss::LeftOut(_))), "far from the origin nothing is lost: {losses:?}");
+    let (json, binary) = chunks(&bytes);
+    assert_eq!(json["asset"]["version"], "2.0");
+    assert_eq!(json["nodes"][0]["name"], "sheet");
+    let names: Vec<&str> = json["materials"].as_array().unwrap().iter().map(|m| m["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["left", "right_1", "rim"]);
+    let color = &json["materials"][1]["pbrMetallicRoughness"]["baseColorFactor"];
+    assert!(color[0] == 1 && (color[1].as_f64().unwrap() - 0.214).abs() < 1e-3 && color[2] == 0, "{color}");
+    let primitives = json["meshes"][0]["primitives"].as_array().unwrap();
+    assert_eq!(primitives.iter().map(|p| p["mode"].as_u64().unwrap()).collect::<Vec<_>>(), [4, 4, 1]);
+    assert_eq!((&primitives[1]["extras"]["name"], &primitives[1]["extras"]["quads_from"]), (&"right_1".into(), &0.into()));
+    // Of the first surface 4 quads are 8 triangles; the group of all has both surfaces.
+    let accessor = |n: &serde_json::Value| &json["accessors"][n.as_u64().unwrap() as usize];
+    assert_eq!(accessor(&primitives[0]["indices"])["count"], 24);
+    let groups = json["meshes"][0]["extras"]["groups"].as_array().unwrap();
+    let all = groups.iter().find(|group| group["name"] == "지붕 all").unwrap();
+    assert_eq!(all["elements"].to_string(), r#"[{"primitive":0,"first":0,"count":8},{"primitive":1,"first":0,"count":8}]"#);
+    assert_eq!(groups.len(), 5, "two surfaces, a curve, a group of faces and one of lines");
+    // The first vertex is the first node: x, z, -y from the centre of the box.
+    let translation: Vec<f64> = json["nodes"][0]["translation"].as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect();
+    let first: Vec<f64> =
+        (0..3).map(|k| f64::from(f32::from_le_bytes(binary[4 * k..4 * k + 4].try_into().unwrap())) + translation[k]).collect();
+    let p = mesh.nodes[0];
+    assert!(DVec3::from_slice(&first).distance(DVec3::new(p.x, p.z, -p.y)) < 1e-6, "{first:?} {p}");
+}
+
+#[test]
+fn a_3mf_holds_each_body_as_an_object_with_its_surfaces_and_sets() {
+    let part = |bytes: &[u8], name: &str| {
+        let mut archive = zip::ZipArchive::new(std::io::Cursor::new(bytes.to_vec())).unwrap();
+        std::io::read_to_string(archive.by_name(name).unwrap()).unwrap()
+    };
+    for quads in [true, false] {
+        let mut mesh = block(2, quads);
+        let mut second = block(1, quads);
+        second.nodes.iter_mut().for_each(|p| *p += 5.0);
+        second.faces.iter_mut().for_each(|face| face.name = "ball".into());
+        mesh.append(second);
+        let (bytes, losses) = write(named("a.3mf"), &mesh, &Options::default());
+        assert!(losses.iter().all(|loss| matches!(loss, Loss::Renamed(renamed) if renamed.family)), "{losses:?}");
+        assert!(part(&bytes, "[Content_Types].xml").contains("3dmanufacturing-3dmodel+xml"));
+        assert!(part(&bytes, "_rels/.rels").contains("Target=\"/3D/3dmodel.model\""));
+        let text = part(&bytes, "3D/3dmodel.model");
+        let has = |n: usize, what: &str| assert_eq!(text.matches(what).count(), n, "{what}\n{text}");
+        has(1, "<model unit=\"millimeter\"");
+        has(1, "<base name=\"side_5\" displaycolor=\"#B6CEE8\"/>");
+        has(1, "<object id=\"2\" type=\"model\" name=\"skin &amp; all\" pid=\"1\" pindex=\"0\">");
+        has(1, "<object id=\"3\" type=\"model\" name=\"ball\" pid=\"1\" pindex=\"6\">");
+        has(26 + 8, "<vertex ");
+        has(48 + 12, "<triangle ");
+        has(8, "pid=\"1\" p1=\"5\"/>");
+        has(1, "<t:triangleset name=\"skin &amp; all\" identifier=\"skin &amp; all\">\n<t:ref index=\"0\"/>\n<t:ref index=\"1\"/>\n");
+        // Of the larger body each triangle is in two sets: its side and all; the smaller one is a set by its name.
+        has(2, "<t:ref index=\"47\"/>");
+        has(1, "<item objectid=\"3\"/>");
+    }
+    // What points inwards is turned, as the outside of a 3MF is where its triangles point.
+    let mut inward = block(1, false);
+    inward.triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
+    let inward = write(named("a.3mf"), &inward, &Options::default()).0;
+    assert!(part(&inward, "3D/3dmodel.model").contains("<triangle v1=\"0\" v2=\"3\" v3=\"2\"/>"));
 }
 
 /// Sum of the areas of triangles and quads, a quad as its two triangles.
@@ -455,25 +569,41 @@ fn decks_for_other_programs() {
     for (kind, order) in [("triangles", 1), ("triangles", 2), ("quads", 1), ("quads", 2)] {
         let mesh = sheet(12, 8, kind == "quads", order);
         let name = format!("{kind}_{order}");
-        for (format, encoding) in FORMATS.iter().flat_map(|format| format.encodings.iter().map(move |encoding| (format, encoding))) {
+        let formats = FORMATS.iter().filter(|format| format.takes != Takes::Bodies);
+        for (format, encoding) in formats.flat_map(|format| format.encodings.iter().map(move |encoding| (format, encoding))) {
             let options = Options { encoding: Some(*encoding), ..Options::default() };
             let file = format!("{name}_{}.{}", if *encoding == Encoding::Text { "text" } else { "binary" }, format.extensions[0]);
             std::fs::write(folder.join(file), write(format, &mesh, &options).0).unwrap();
         }
-        let groups: serde_json::Map<String, serde_json::Value> = mesh
-            .groups
-            .iter()
-            .map(|g| {
-                let elements = g.lines.len() + g.triangles.len() + g.quads.len();
-                (g.name.clone(), serde_json::json!({ "nodes": g.nodes.len(), "elements": elements, "dimension": g.dimension() }))
-            })
-            .collect();
-        let facts = serde_json::json!({
-            "nodes": mesh.nodes.len(), "corners": 13 * 9, "lines": mesh.lines.len(), "triangles": mesh.triangles.len(),
-            "quads": mesh.quads.len(), "order": order, "area": area(&mesh), "groups": groups,
-        });
-        std::fs::write(folder.join(format!("{name}.json")), facts.to_string()).unwrap();
+        std::fs::write(folder.join(format!("{name}.json")), facts(&mesh, 13 * 9).to_string()).unwrap();
     }
+    for quads in [false, true] {
+        let mesh = block(5, quads);
+        let name = if quads { "block_quads" } else { "block_triangles" };
+        for format in ["glb", "3mf"] {
+            let bytes = write(named(&format!("a.{format}")), &mesh, &Options::default()).0;
+            std::fs::write(folder.join(format!("{name}_binary.{format}")), bytes).unwrap();
+        }
+        std::fs::write(folder.join(format!("{name}.json")), facts(&mesh, mesh.nodes.len()).to_string()).unwrap();
+    }
+}
+
+/// What is known of a mesh, for other programs.
+fn facts(mesh: &Mesh, corners: usize) -> serde_json::Value {
+    let groups: serde_json::Map<String, serde_json::Value> = mesh
+        .groups
+        .iter()
+        .map(|g| {
+            let elements = g.lines.len() + g.triangles.len() + g.quads.len();
+            (g.name.clone(), serde_json::json!({ "nodes": g.nodes.len(), "elements": elements, "dimension": g.dimension() }))
+        })
+        .collect();
+    let surfaces: std::collections::BTreeSet<&str> =
+        mesh.faces.iter().filter(|face| face.lines.is_empty()).map(|face| face.name.as_str()).collect();
+    serde_json::json!({
+        "nodes": mesh.nodes.len(), "corners": corners, "lines": mesh.lines.len(), "triangles": mesh.triangles.len(),
+        "quads": mesh.quads.len(), "order": mesh.order, "area": area(mesh), "groups": groups, "surfaces": surfaces,
+    })
 }
 
 proptest! {

@@ -164,12 +164,13 @@ fn a_plan_says_what_a_script_says() {
 fn meshes_are_written_by_the_name_of_the_file() {
     let mesh = MeshPlan::new("roof").size(1.0).mesh(&roof()).unwrap();
     let folder = folder("meshes");
-    for ending in ["stl", "obj", "ply", "vtu", "msh", "inp", "bdf"] {
+    for ending in ["stl", "obj", "ply", "vtu", "msh", "inp", "bdf", "glb"] {
         let path = folder.join(format!("roof.{ending}"));
         mesh.write(&path).unwrap();
         assert_eq!(fs::read(&path).unwrap(), mesh.to_bytes(&format!("roof.{ending}")).unwrap());
     }
     assert_eq!(mesh.to_bytes("roof.docx").unwrap_err().code(), "E804");
+    assert_eq!(mesh.to_bytes("roof.3mf").unwrap_err().code(), "E805", "it is open");
     assert_eq!(mesh.write(folder.join("roof.stl").join("x.stl")).unwrap_err().code(), "E808");
     fs::remove_dir_all(folder).unwrap();
 }

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use lofting::lang::eval::std::{Builtin, Param, builtins, fields};
 use lofting::lang::values::types::Ty;
+use lofting::lang::values::value::Dim;
 use lofting::session::disk::{Disk, Outputs};
 
 use crate::support::script;
@@ -28,7 +29,11 @@ fn thing(ty: Ty) -> &'static str {
         }
         Ty::Point => "point thing = (1m, 0, 0)\nlet things for i in 0..1 = thing\n",
         Ty::Bool => "let thing = true\nlet things for i in 0..1 = thing\n",
-        Ty::Number => "let thing = 3\nlet things for i in 0..1 = thing\n",
+        Ty::Number | Ty::Count => "let thing = 3\nlet things for i in 0..1 = thing\n",
+        Ty::Text => "let thing = \"a\"\nlet things for i in 0..1 = thing\n",
+        Ty::Record => "let thing = {a: 1}\nlet things for i in 0..1 = thing\n",
+        Ty::Direction => "let thing = (1, 0, 0)\nlet things for i in 0..1 = thing\n",
+        Ty::Quantity(dim) if dim == Dim::ANGLE => "let thing = 3deg\nlet things for i in 0..1 = thing\n",
         Ty::Quantity(_) | Ty::Measure => "let thing = 3mm\nlet things for i in 0..1 = thing\n",
         other => panic!("no thing of this type: {}", other.words()),
     }

@@ -5,6 +5,7 @@ use lofting::base::fault::Fault;
 use lofting::base::origin::Origin;
 use lofting::base::tolerance::Tolerance;
 use lofting::geometry::construct::build::{arc_center, arc_through, circle, line, polyline, spline};
+use lofting::geometry::construct::spline::{open_slopes, through};
 use lofting::geometry::{Curve, Ends, Motion, Spline};
 use lofting::model::measure;
 use lofting::network::flow::Member;
@@ -382,8 +383,8 @@ fn gridded_points_with_given_tangents() {
     let (h, k) = ((su[0], su[1]), (sv[0], sv[2]));
     let twist = |key: &str, area: f64| vec3(&data["twists"][key]) / area;
     let tangents = Tangents {
-        across_u: Some((local("s0", h.0), local("sm", h.1))),
-        across_v: Some((local("t0", k.0), local("tn", k.1))),
+        across_u: [Some(local("s0", h.0)), Some(local("sm", h.1))],
+        across_v: [Some(local("t0", k.0)), Some(local("tn", k.1))],
         twists: [twist("x00", h.0 * k.0), twist("xm0", h.1 * k.0), twist("x0n", h.0 * k.1), twist("xmn", h.1 * k.1)],
     };
     let (net, notes) = fitted(&rows, &tangents, Origin::NONE, &tolerance()).unwrap();
@@ -396,6 +397,36 @@ fn gridded_points_with_given_tangents() {
     for sample in data["samples"].as_array().unwrap() {
         let (u, v) = (number(&sample["u_fraction"]), number(&sample["v_fraction"]));
         close(net.jet(u, v, (OneSided::After, OneSided::After)).p, vec3(&sample["point"]), 1e-12, "sample");
+    }
+}
+
+#[test]
+fn lines_of_a_grid_with_given_tangents_and_twists() {
+    let data = &reference("nub_fit")["surface_fit"];
+    let points = |value: &Value| value.as_array().unwrap().iter().map(vec3).collect::<Vec<DVec3>>();
+    let spans = |key: &str| data[key].as_array().unwrap().iter().map(number).collect::<Vec<f64>>();
+    let su = spans("spans_u");
+    let poles = |row: &[DVec3], ends: [DVec3; 2]| {
+        let curve = through(row, &su, &open_slopes(row, &su, ends.map(Some)));
+        curve.poles.iter().map(|p| p.truncate()).collect::<Vec<DVec3>>()
+    };
+    let same = |found: &[DVec3], expected: &[DVec3], what: &str| {
+        assert_eq!(found.len(), expected.len());
+        found.iter().zip(expected).for_each(|(a, b)| close(*a, *b, 1e-12, what));
+    };
+    // Of each column of data, first index along u, the poles along u.
+    let by_u: Vec<Vec<DVec3>> = data["data"].as_array().unwrap().iter().map(points).collect();
+    let lines: Vec<Vec<DVec3>> = data["intermediate_C"].as_array().unwrap().iter().map(points).collect();
+    let (s0, sm) = (points(&data["tangents"]["s0"]), points(&data["tangents"]["sm"]));
+    for j in 0..4 {
+        let row: Vec<DVec3> = by_u.iter().map(|column| column[j]).collect();
+        let expected: Vec<DVec3> = lines.iter().map(|line| line[j]).collect();
+        same(&poles(&row, [s0[j] / su[0], sm[j] / su[1]]), &expected, "C");
+    }
+    // The derivatives along v at both borders, with the twists at their ends.
+    for (rows, [first, last], expected) in [("t0", ["x00", "xm0"], "d"), ("tn", ["x0n", "xmn"], "e")] {
+        let ends = [vec3(&data["twists"][first]) / su[0], vec3(&data["twists"][last]) / su[1]];
+        same(&poles(&points(&data["tangents"][rows]), ends), &points(&data[expected]), expected);
     }
 }
 

@@ -7,6 +7,7 @@ import concurrent.futures
 import contextlib
 import glob
 import json
+import math
 import multiprocessing
 import os
 import shutil
@@ -77,6 +78,8 @@ def facts_of(report):
         "order": mesh["order"],
         "area": mesh["area"],
         "groups": {group["name"]: {"nodes": group["nodes"], "elements": group["elements"]} for group in mesh["groups"]},
+        "surfaces": [surface["name"] for surface in report["surfaces"]],
+        "metre": {"mm": 1000.0, "cm": 100.0, "m": 1.0}[report["units"]],
     }
 
 
@@ -91,9 +94,30 @@ def check_model(tally, loft, work, elements, order):
         return
     facts = facts_of(report)
     written = sorted(os.listdir(folder))
-    tally.check(f"{label}: files", lambda: read_back.expect("files", len(written), 11))
+    tally.check(f"{label}: files", lambda: read_back.expect("files", len(written), 12))
     for name in written:
         for reader_label, reader in read_back.readers(os.path.join(folder, name), facts):
+            tally.check(f"{label} {name} by {reader_label}", reader)
+
+
+# The box of `bodies.loft`, and the volumes of its shells, cubic centimetres.
+BODIES = {
+    "box": [[-2.0, -3.0, -3.0], [13.0, 3.0, 6.0]],
+    "bodies": {"can": 20.0 * math.pi, "globe": 4.0 / 3.0 * math.pi * (27.0 - 1.0)},
+}
+
+
+def check_bodies(tally, loft, work, elements, order):
+    """The model of closed bodies in the formats of pictures and printers."""
+    label = f"bodies {elements} {order}"
+    folder = os.path.join(work, label.replace(" ", "_"))
+    report = {}
+    settings = ["--set", f"kind={elements}", "--set", f"degree={order}"]
+    tally.check(f"{label}: run", lambda: report.update(run_loft(loft, os.path.join(HERE, "models", "bodies.loft"), folder, *settings)))
+    if not report:
+        return
+    for name in ["bodies_binary.3mf", "bodies_binary.glb"]:
+        for reader_label, reader in read_back.readers(os.path.join(folder, name), {**facts_of(report), **BODIES}):
             tally.check(f"{label} {name} by {reader_label}", reader)
 
 
@@ -146,6 +170,7 @@ def files_and_solvers(tally, loft, work, decks):
         for order in ["1", "2"]:
             check_model(tally, loft, work, elements, order)
             check_orders(tally, loft, work, elements, order)
+            check_bodies(tally, loft, work, elements, order)
     for case in solve.CASES + members.CASES:
         tally.check(f"CalculiX: {case.name}", lambda: case.run(lambda *a: run_loft(loft, *a), work))
     check_reports(tally, loft, ROOT)

@@ -1,4 +1,4 @@
-"""Reads mesh files with gmsh, meshio, pyNastran and plyfile and compares counts, areas and sets with what is known of the mesh.
+"""Reads mesh files with gmsh, meshio, pyNastran and plyfile, and those of scenes.py, and compares counts, areas and sets with what is known of the mesh.
 
 `facts` has nodes, lines (None: not known), triangles, quads, order, area and groups {name: {nodes, elements}}.
 """
@@ -43,6 +43,8 @@ def in_file(name, strict):
 
 def readers(path, facts):
     """(label, check) for each program that reads this kind of file."""
+    import scenes
+
     ending = path.rsplit(".", 1)[1]
     binary = "binary" in os.path.basename(path)
     table = {
@@ -54,6 +56,8 @@ def readers(path, facts):
         "msh": [("meshio", meshio_msh), ("gmsh", gmsh_msh)],
         # gmsh writes INP but does not read it. meshio knows S8R and STRI65, not S8 and S6.
         "inp": [("meshio", meshio_inp)] if facts["order"] == 1 or "solver_names" in path else [("lines", lines_inp)],
+        "glb": [("trimesh", scenes.glb_trimesh), ("pygltflib", scenes.glb_pygltflib), ("gltf-validator", scenes.glb_validator)],
+        "3mf": [("trimesh", scenes.threemf_trimesh), ("lib3mf", scenes.threemf_lib3mf)],
         "bdf": [("meshio", meshio_bdf), ("gmsh", gmsh_bdf), ("pyNastran", pynastran_bdf)],
     }
     share = SINGLE if ending == "stl" and binary else DOUBLE

@@ -38,7 +38,7 @@ STEPS = [
     (["roof.area", "Enter"], [r"E201 × `roof` is not defined"]),
     ([":undo", "Enter"], [r"surface roof: ruled"]),
     ([":mesh fine", "Enter"], [r"mesh fine: \d+ nodes"]),
-    ([":view", "Enter"], [r"E230 × `:view` is not in this version"]),
+    ([":view", "Enter"], [r"http://127\.0\.0\.1:\d+/[0-9a-f]{32}/"]),
     # The arrow key brings entries of before back.
     (["Up", "Up", "Enter"], [r"mesh fine: \d+ nodes"]),
     ([":save kept.loft", "Enter"], [r"wrote kept\.loft"]),

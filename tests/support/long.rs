@@ -37,13 +37,16 @@ pub fn scripts(folders: &[&str]) -> Vec<PathBuf> {
     found
 }
 
-/// About a quarter of the scripts in a short run, all of them in a long one. A digest of its path decides which of the four quarters a
-/// script belongs to, so that a new script leaves the others where they are.
-pub fn sample(scripts: Vec<PathBuf>, quarter: u64) -> Vec<PathBuf> {
+/// One of four parts that a script belongs to, by a digest of its path, so that a new script leaves the others where they are; another
+/// `round` parts them in another way.
+pub fn quarter(path: &Path, round: u64) -> u64 {
     // FNV-1a, 64 bits.
-    let digest = |path: &Path| {
-        let bytes = path.to_string_lossy().replace('\\', "/").into_bytes();
-        bytes.iter().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3))
-    };
-    scripts.into_iter().filter(|path| is_long() || (digest(path) >> 32) % 4 == quarter).collect()
+    let bytes = path.to_string_lossy().replace('\\', "/").into_bytes();
+    let digest = bytes.iter().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3));
+    (digest >> (32 - 4 * round)) % 4
+}
+
+/// About a quarter of the scripts in a short run, all of them in a long one.
+pub fn sample(scripts: Vec<PathBuf>, part: u64) -> Vec<PathBuf> {
+    scripts.into_iter().filter(|path| is_long() || quarter(path, 0) == part).collect()
 }
