@@ -30,7 +30,6 @@ LONGEST = 300
 GAPS = "borders that became one edge are apart by more than that, as the model allows"
 JUDGE = "the other kernel measures a surface of several rational pieces wrong; the area of its points on a fine grid is right"
 PARABOLAS = "the other kernel takes too few points for the area of one biquadratic patch; by 80 x 80 Gauss points of the face it read the areas agree to 1e-13"
-TIP = "a part of a side is one point: there the other kernel's areas of the same face from STEP and from IGES differ by 1e-6"
 SMALL = "small faces between curves that are within the tolerance"
 THIN = "a thin wall between surfaces that are within the tolerance"
 VOLUME_ONLY = "the areas of a thin wall agree, its volume does not: the cause is not found"
@@ -42,7 +41,6 @@ KNOWN = {
     "fender: fender": GAPS,
     "gap_meshes: wave": GAPS,
     "glued: roof": GAPS,
-    "product_carrier: aft_bottom": TIP,
     "round: bite": SMALL,
     "shallow_crossings: octant": ALONG,
     "shell_walls: casing": THIN,
