@@ -92,7 +92,7 @@ macro_rules! numbers {
     };
 }
 
-numbers!(u8, u32, u64, u128, f64);
+numbers!(u8, u32, u64, u128, f32, f64);
 
 impl Put for usize {
     fn put(&self, to: &mut Vec<u8>) {

@@ -22,7 +22,7 @@ use crate::mesh::cache::reuse::Shelf;
 
 const MAGIC: [u8; 8] = *b"loftkept";
 /// One more whenever the bytes of a result change their meaning; older files are never read.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 const ENDING: &str = ".kept";
 
 /// What a file begins with.

@@ -12,7 +12,7 @@ use crate::mesh::chart::face_input::FaceInput;
 use crate::mesh::chart::outline::Outline;
 use crate::mesh::data::face_geometry::Free;
 use crate::mesh::data::face_mesh::FreeInside;
-use crate::mesh::request::decider::{Decider, Tally, Why};
+use crate::mesh::request::decider::{Decided, Decider, Tally, Why};
 use crate::mesh::request::limits::Limits;
 use crate::mesh::request::sources::{Body, Source, Sources};
 
@@ -21,11 +21,12 @@ use crate::mesh::request::sources::{Body, Source, Sources};
 pub struct CachedFace {
     free: Free,
     points: Vec<DVec3>,
-    deciders: Vec<Decider>,
+    decided: Decided,
     tally: Option<Tally>,
 }
 
-crate::plain!(CachedFace { free, points, deciders, tally });
+crate::plain!(CachedFace { free, points, decided, tally });
+crate::plain!(Decided { deciders, of, lengths });
 crate::plain!(Decider { why, nodes, at });
 crate::plain!(Tally { whole, crossed, corners, agree });
 crate::content!(Source { body, radius, size, steep, tag });
@@ -107,13 +108,12 @@ impl FaceKey<'_> {
 impl CachedFace {
     /// Of a computed face.
     pub fn of(free: &Free, inside: &FreeInside) -> Self {
-        Self { free: free.clone(), points: inside.points.clone(), deciders: inside.deciders.clone(), tally: inside.tally }
+        Self { free: free.clone(), points: inside.points.clone(), decided: inside.decided.clone(), tally: inside.tally }
     }
 
     /// Its places and elements and its inside, for a border with these edges; `None` where it is of a border with another number of nodes.
     pub fn parts(&self, border: usize, loops: &[[u32; 2]]) -> Option<(Free, FreeInside)> {
-        let inside =
-            || FreeInside { points: self.points.clone(), loops: loops.to_vec(), deciders: self.deciders.clone(), tally: self.tally };
+        let inside = || FreeInside { points: self.points.clone(), loops: loops.to_vec(), decided: self.decided.clone(), tally: self.tally };
         (self.free.border == border).then(|| (self.free.clone(), inside()))
     }
 
@@ -129,7 +129,8 @@ impl CachedFace {
         let known = |n: &u32| (*n as usize) < nodes;
         let sound = face.free.border + face.points.len() == nodes
             && face.free.triangles.iter().flatten().all(known)
-            && face.free.quads.iter().flatten().all(known);
+            && face.free.quads.iter().flatten().all(known)
+            && face.decided.is_sound(face.points.len());
         sound.then_some(face)
     }
 

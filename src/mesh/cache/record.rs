@@ -4,6 +4,7 @@ use crate::base::bytes::{Bytes, Plain, Put};
 use crate::mesh::border::touch::{Kind, Touch};
 use crate::mesh::data::face_geometry::{FaceGeometries, FaceGeometry, FaceNodes, Free};
 use crate::mesh::data::mesh::{FaceRange, Group, Mesh};
+use crate::mesh::data::node_sizes::NodeSizes;
 use crate::mesh::mapped::grid::{self, Grid};
 use crate::mesh::mapped::trilateral::{Blocks, Lattice, LatticeIds};
 use crate::mesh::report::built::Built;
@@ -137,8 +138,10 @@ pub fn write(built: &Built, surfaces: &[&Surface]) -> Option<Vec<u8>> {
         groups,
         geometries,
         border_error,
+        sizes,
     } = mesh;
     (name, (order, border_error)).put(&mut to);
+    (&sizes.words, (&sizes.of, &sizes.lengths)).put(&mut to);
     (nodes, points).put(&mut to);
     (lines, (triangles, quads)).put(&mut to);
     (line_mids, (triangle_mids, quad_mids)).put(&mut to);
@@ -159,6 +162,7 @@ pub fn read(bytes: &[u8], surfaces: &[&Surface]) -> Option<Built> {
     type Mids = (Vec<u32>, (Vec<[u32; 3]>, Vec<[u32; 4]>));
     let mut from = Bytes(bytes);
     let (name, (order, border_error)) = Plain::take(&mut from)?;
+    let (words, (of, lengths)) = Plain::take(&mut from)?;
     let (nodes, points) = Plain::take(&mut from)?;
     let (lines, (triangles, quads)): Parts = Plain::take(&mut from)?;
     let (line_mids, (triangle_mids, quad_mids)): Mids = Plain::take(&mut from)?;
@@ -184,6 +188,7 @@ pub fn read(bytes: &[u8], surfaces: &[&Surface]) -> Option<Built> {
         groups,
         geometries,
         border_error,
+        sizes: NodeSizes { words, of, lengths },
     };
     let sound = from.is_empty() && is_sound(&mesh);
     sound.then(|| Built { mesh, explanation: Explanation { lines: explained, ..Explanation::default() }, remarks })
@@ -198,6 +203,7 @@ fn is_sound(mesh: &Mesh) -> bool {
     let mids = |mids: usize, elements: usize| mids == 0 || mids == elements;
     let below = |ids: &[u32], n: u32| ids.iter().all(|id| *id < n);
     (1..=2).contains(&mesh.order)
+        && mesh.sizes.is_sound(mesh.corner_count())
         && [&mesh.points, &mesh.line_mids].into_iter().flatten().all(node)
         && mesh.lines.iter().flatten().all(node)
         && [&mesh.triangles, &mesh.triangle_mids].into_iter().flatten().flatten().all(node)

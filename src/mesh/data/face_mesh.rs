@@ -8,7 +8,7 @@ use crate::mesh::data::face_geometry::{FaceGeometry, FaceNodes};
 use crate::mesh::mapped::diagonals::{DiagonalRule, diagonals};
 use crate::mesh::mapped::grid;
 use crate::mesh::mapped::trilateral::LatticeIds;
-use crate::mesh::request::decider::{Decider, Tally};
+use crate::mesh::request::decider::{Decided, Tally};
 use crate::mesh::request::methods::Elements;
 use crate::model::SurfaceId;
 use crate::surface::Surface;
@@ -41,8 +41,8 @@ pub struct FreeInside {
     pub points: Vec<DVec3>,
     /// Edges of the loops by place in the list of (u, v), with the face on their left.
     pub loops: Vec<[u32; 2]>,
-    /// What decided the sizes inside.
-    pub deciders: Vec<Decider>,
+    /// What decided the sizes at the inner nodes.
+    pub decided: Decided,
     /// Its cells between lines of constant u and v, where it was made of these.
     pub tally: Option<Tally>,
 }

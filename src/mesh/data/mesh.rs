@@ -5,6 +5,7 @@ use std::ops::Range;
 use glam::DVec3;
 
 use crate::mesh::data::face_geometry::FaceGeometries;
+use crate::mesh::data::node_sizes::NodeSizes;
 
 /// Elements of one patch or curve, contiguous in the arrays.
 #[derive(Clone, Debug, PartialEq)]
@@ -77,6 +78,8 @@ pub struct Mesh {
     pub geometries: FaceGeometries,
     /// Largest distance between the steps of borders of one face alone and their curves, model units; 0 for meshes that were read.
     pub border_error: f64,
+    /// Asked lengths at its corner nodes and what decided them; empty where nobody asked for them, and for meshes that were read.
+    pub sizes: NodeSizes,
 }
 
 impl Mesh {
@@ -103,6 +106,9 @@ impl Mesh {
         let (corners, all) = (self.corner_count(), self.nodes.len() as u32);
         let own_mids = self.nodes.split_off(corners);
         let more = other.corner_count();
+        if !(self.sizes.is_empty() && other.sizes.is_empty()) {
+            self.sizes.append(corners, &other.sizes, more);
+        }
         self.shift_mids(more as u32);
         other.shift_mids(all);
         self.nodes.extend(other.nodes.drain(..more));

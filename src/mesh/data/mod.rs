@@ -7,6 +7,7 @@ pub mod hash;
 pub mod mesh;
 pub mod mesh_check;
 pub mod moved;
+pub mod node_sizes;
 pub mod parts;
 pub mod quality;
 pub mod section;

@@ -9,6 +9,7 @@ impl Mesh {
         let mut moved = self.clone();
         moved.nodes.iter_mut().for_each(|p| *p = motion.point(*p));
         moved.border_error *= motion.scale();
+        moved.sizes.scale(motion.scale());
         for geometry in &mut moved.geometries.0 {
             geometry.surface = geometry.surface.moved(motion);
             geometry.flipped ^= motion.mirrors();

@@ -26,7 +26,7 @@ pub(crate) fn filled(
     if face.elements != Elements::Triangles && face.method.of_triangles().is_none() {
         return quad_face::prepare(face_input, face, border, chart, outline, job);
     }
-    let FittedFace { triangulation, deciders, tally } = match fitted(face_input, face, chart, outline, job)? {
+    let FittedFace { triangulation, decided, tally } = match fitted(face_input, face, chart, outline, job)? {
         Ok(fitted) => fitted,
         Err(reason) => return Err(fault(face_input, face, &border, reason)),
     };
@@ -40,5 +40,5 @@ pub(crate) fn filled(
     uv.extend(triangulation.xy[fixed..].iter().map(|xy| chart.uv(*xy)));
     let points = triangulation.p[fixed..].to_vec();
     let free = Free { uv, border: fixed, triangles, ..Free::default() };
-    Ok(prepared(face_input, face, free, border.ids, FreeInside { points, loops: border.edges, deciders, tally }))
+    Ok(prepared(face_input, face, free, border.ids, FreeInside { points, loops: border.edges, decided: decided.without(fixed), tally }))
 }

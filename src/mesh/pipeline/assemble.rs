@@ -13,6 +13,7 @@ use crate::mesh::output::{lines, second_order};
 use crate::mesh::pipeline::attempt::{FinishedMesh, attempt};
 use crate::mesh::report::border_error;
 use crate::mesh::report::explain::Explanation;
+use crate::mesh::report::node_sizes;
 use crate::mesh::request::fault::SizeFault;
 use crate::mesh::request::input::Input;
 use crate::mesh::size::sizing::Sizing;
@@ -43,7 +44,7 @@ pub fn assemble(input: &Input, mut layout: Layout, size: f64, cache: Option<&Cac
     debug_assert_eq!(layout.check(input), Ok(()));
     loop {
         match attempt(input, &mut layout, size, cache, job) {
-            Ok(done) => return Ok(finish(input, layout, done)),
+            Ok(done) => return Ok(finish(input, layout, done, cache.is_some())),
             // Faces that are free only for better angles have a map.
             Err(_) if keep_maps(&mut layout) => job.go_on()?,
             Err(fault) if halve_tilted(input, &mut layout, &fault) => job.go_on()?,
@@ -77,9 +78,12 @@ fn halve_tilted(input: &Input, layout: &mut Layout, fault: &Fault) -> bool {
     any
 }
 
-/// Ranges, line elements and mid nodes.
-fn finish(input: &Input, layout: Layout, done: FinishedMesh) -> MeshPart {
+/// Ranges, line elements and mid nodes; with asked lengths for a session, where somebody may look at the mesh.
+fn finish(input: &Input, layout: Layout, done: FinishedMesh, sized: bool) -> MeshPart {
     let FinishedMesh { nodes, prepared, sizing, mut mesh, explanation } = done;
+    if sized {
+        mesh.sizes = node_sizes::of_nodes(input, &layout, &nodes, &sizing, &prepared, &explanation, mesh.nodes.len());
+    }
     let mut ranges = crate::mesh::output::sets::Ranges::new();
     for ((face_mesh, face), own) in prepared.iter().zip(&layout.faces).zip(face_mesh::element_ranges(&prepared)) {
         let [triangles, quads] = [own.0, own.1].map(|range| range.start as u32..range.end as u32);

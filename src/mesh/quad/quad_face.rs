@@ -18,7 +18,7 @@ use crate::mesh::deviation::edge_length;
 use crate::mesh::quad::net::Net;
 use crate::mesh::quad::net_fit::{NetFit, nodes};
 use crate::mesh::quad::settings::{NET_FIT, QUAD_FACE};
-use crate::mesh::request::decider::Decider;
+use crate::mesh::request::decider::Decided;
 use crate::mesh::request::limits::Limits;
 use crate::mesh::request::methods::Elements;
 use crate::mesh::request::sources::Sources;
@@ -44,7 +44,7 @@ pub(crate) fn prepare(
     };
     let Some(halves) = halves else { return Err(fault(face_input, face, &border, NoMesh::Border(PointsFault::Same(0, 0)))) };
     let fitted = fitted_net(face_input, face, chart, outline, &halves, job)?;
-    let FittedNet { net, deciders } = fitted.map_err(|reason| fault(face_input, face, &border, of_whole(&halves, reason)))?;
+    let FittedNet { net, decided } = fitted.map_err(|reason| fault(face_input, face, &border, of_whole(&halves, reason)))?;
     let fixed = net.fixed as usize;
     let mut uv = border.uv;
     uv.extend(net.xy[fixed..].iter().map(|xy| chart.uv(*xy)));
@@ -56,7 +56,13 @@ pub(crate) fn prepare(
             quad => free.quads.push(quad),
         }
     }
-    Ok(prepared(face_input, face, free, border.ids, FreeInside { points, loops: border.edges, deciders, tally: None }))
+    Ok(prepared(
+        face_input,
+        face,
+        free,
+        border.ids,
+        FreeInside { points, loops: border.edges, decided: decided.without(fixed), tally: None },
+    ))
 }
 
 /// The reason with nodes of the whole border.
@@ -73,7 +79,7 @@ fn of_whole(halves: &Halves, reason: NoMesh) -> NoMesh {
 struct FittedNet {
     net: Net,
     /// What decided its sizes.
-    deciders: Vec<Decider>,
+    decided: Decided,
 }
 
 /// Elements that keep the limits.
@@ -93,8 +99,8 @@ fn fitted_net(face_input: &FaceInput, face: &Face, chart: &Chart, outline: &Outl
     let mut field = GradedSize { sources: &sources, range: (face.size.0, face_input.wanted.written), spacing, background };
     let net_fit = NetFit { fit: &fit, halves };
     Ok(net_fit.fitted(&mut field, job)?.map(|net| {
-        let deciders = fit.deciders(&field, &nodes(&net));
-        FittedNet { net, deciders }
+        let decided = fit.decided(&field, &nodes(&net));
+        FittedNet { net, decided }
     }))
 }
 

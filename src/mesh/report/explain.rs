@@ -131,6 +131,19 @@ impl Explanation {
         notes
     }
 
+    /// Who decided the count of a segment, in words that follow "by".
+    pub fn reason(&self, input: &Input, sizing: &Sizing, segment: usize) -> String {
+        let decision = &sizing.decisions[segment];
+        match (self.segments[segment].because, decision.count, decision.size.1) {
+            (Because::Count(_), Some((_, clause)), _) | (Because::RuleSize(_), _, Some(clause)) => reasons::clause(input, clause),
+            (Because::Count(_) | Because::RuleSize(_), ..) => "a rule".to_owned(),
+            (Because::Varies, ..) => "sizes along it".to_owned(),
+            (Because::Limit, ..) => "chord_error, angle_error or the shape".to_owned(),
+            (Because::Size, ..) => "the size".to_owned(),
+            (Because::Neighbours, ..) => "the rows or faces beside it".to_owned(),
+        }
+    }
+
     fn words(&self, input: &Input, layout: &Layout, sizing: &Sizing, prepared: &[FaceMesh]) -> Vec<String> {
         let face = |(k, f): (usize, &FaceNote)| {
             let sides: Vec<String> = f.sides.iter().map(|n| if *n == 0 { "pole".to_owned() } else { n.to_string() }).collect();
@@ -141,7 +154,7 @@ impl Explanation {
             let why = face.why.as_ref().map_or(told, |why| format!(" (a face {why})"));
             let size = face.size.1.map_or_else(String::new, |clause| format!("; by {}", reasons::clause(input, clause)));
             let inside = prepared[k].inside.as_ref().map_or_else(String::new, |inside| {
-                reasons::of_face(input, &inside.deciders) + &inside.tally.map_or_else(String::new, reasons::of_cells)
+                reasons::of_face(input, &inside.decided.deciders) + &inside.tally.map_or_else(String::new, reasons::of_cells)
             });
             format!("face {} of {name}: {}{why}, {}, sides {}{size}{inside}", f.patch, f.method, f.elements, sides.join(" "))
         };
@@ -161,14 +174,7 @@ impl Explanation {
             };
             let Some(first) = strip.iter().min_by_key(ranked) else { continue };
             let decision = &sizing.decisions[*first];
-            let why = match (self.segments[*first].because, decision.count, decision.size.1) {
-                (Because::Count(_), Some((_, clause)), _) | (Because::RuleSize(_), _, Some(clause)) => reasons::clause(input, clause),
-                (Because::Count(_) | Because::RuleSize(_), ..) => "a rule".to_owned(),
-                (Because::Varies, ..) => "sizes along it".to_owned(),
-                (Because::Limit, ..) => "chord_error, angle_error or the shape".to_owned(),
-                (Because::Size, ..) => "the size".to_owned(),
-                (Because::Neighbours, ..) => "the rows or faces beside it".to_owned(),
-            };
+            let why = self.reason(input, sizing, *first);
             let spacing = sizing.spacings[*first].as_ref().map_or_else(String::new, |spacing| reasons::of_spacing(input, spacing));
             let raised = decision.count.is_none() && decision.unrounded < decision.demand && decision.demand == self.segments[*first].count;
             let ring = if raised { reasons::of_ring(decision.unrounded) } else { String::new() };

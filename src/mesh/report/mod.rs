@@ -4,4 +4,5 @@ pub mod blame;
 pub mod border_error;
 pub mod built;
 pub mod explain;
+pub mod node_sizes;
 pub mod reasons;

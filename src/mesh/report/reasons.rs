@@ -82,7 +82,7 @@ fn refined(input: &Input, k: usize) -> String {
 }
 
 /// A cause in words that follow "by".
-fn cause(input: &Input, why: Why) -> String {
+pub fn cause(input: &Input, why: Why) -> String {
     match why {
         Why::Size => "the size".to_owned(),
         Why::Refined(k) => refined(input, k),

@@ -1,5 +1,7 @@
 //! What decides sizes inside a face, and what is counted of its cells.
 
+use glam::DVec3;
+
 /// What decides sizes inside a free face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Why {
@@ -25,7 +27,60 @@ pub struct Decider {
     /// Inner nodes whose distance it decided.
     pub nodes: usize,
     /// One of them.
-    pub at: glam::DVec3,
+    pub at: DVec3,
+}
+
+/// What decided the sizes of a face: each decider with what it decided, and the decider of each node.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Decided {
+    /// Deciders, in order of [`Why`].
+    pub deciders: Vec<Decider>,
+    /// Decider of each node, by its place among the deciders.
+    pub of: Vec<u32>,
+    /// Asked length of the edges at each node, model units; not a number where no length was asked.
+    pub lengths: Vec<f32>,
+}
+
+impl Decided {
+    /// Adds the next node: what decided, the asked length of its edges, its point, and whether it lies inside the face.
+    pub fn push(&mut self, why: Why, length: f64, p: DVec3, inside: bool) {
+        let inner = usize::from(inside);
+        let place = self.deciders.iter().position(|d| d.why == why).unwrap_or_else(|| {
+            self.deciders.push(Decider { why, nodes: 0, at: p });
+            self.deciders.len() - 1
+        });
+        let decider = &mut self.deciders[place];
+        if decider.nodes == 0 {
+            decider.at = p;
+        }
+        decider.nodes += inner;
+        self.of.push(place as u32);
+        self.lengths.push(length as f32);
+    }
+
+    /// Puts the deciders in order.
+    pub fn sorted(mut self) -> Self {
+        let mut order: Vec<usize> = (0..self.deciders.len()).collect();
+        order.sort_by_key(|k| self.deciders[*k].why);
+        let mut place = vec![0; order.len()];
+        order.iter().zip(0..).for_each(|(k, now)| place[*k] = now);
+        self.of.iter_mut().for_each(|k| *k = place[*k as usize]);
+        self.deciders.sort_by_key(|d| d.why);
+        self
+    }
+
+    /// Whether it is of so many nodes, each with a decider that is there.
+    pub fn is_sound(&self, nodes: usize) -> bool {
+        let deciders = self.deciders.len();
+        self.of.len() == nodes && self.lengths.len() == nodes && self.of.iter().all(|k| (*k as usize) < deciders)
+    }
+
+    /// The same without the first `border` nodes.
+    pub fn without(mut self, border: usize) -> Self {
+        self.of.drain(..border.min(self.of.len()));
+        self.lengths.drain(..border.min(self.lengths.len()));
+        self
+    }
 }
 
 /// The cells of a face between lines of constant u and v.

@@ -162,6 +162,13 @@ impl BorderSpacing {
         self.lengths[k - 1] + (self.lengths[k] - self.lengths[k - 1]) * t
     }
 
+    /// What decides at a fraction; `None` where it is not known.
+    pub fn why_at(&self, f: f64) -> Option<Why> {
+        let k = self.at.partition_point(|a| *a <= f).clamp(1, self.at.len() - 1);
+        let nearer = if f - self.at[k - 1] <= self.at[k] - f { k - 1 } else { k };
+        self.why.get(nearer).copied()
+    }
+
     /// Number of steps over the whole for no step longer than wanted or than `size`; `most` at most.
     pub fn demand(&self, length: f64, size: f64, most: u32) -> u32 {
         let part = |k: usize| {

@@ -92,7 +92,7 @@ impl RuleEffects {
 
     /// Marks the clauses that decide sizes inside free faces.
     pub fn mark_inside(&mut self, input: &Input, prepared: &[FaceMesh]) {
-        for decider in prepared.iter().filter_map(|face| face.inside.as_ref()).flat_map(|inside| &inside.deciders) {
+        for decider in prepared.iter().filter_map(|face| face.inside.as_ref()).flat_map(|inside| &inside.decided.deciders) {
             if let Why::Refined(clause) = decider.why {
                 self.used[input.plan.rules.len() + clause] = true;
             }

@@ -42,7 +42,7 @@ impl FaceFit<'_> {
             point,
         };
         match mesh_isolines(&input, job)? {
-            Ok(mesh) => Ok(Ok(FittedFace { triangulation: mesh.triangulation, deciders: mesh.deciders, tally: Some(mesh.tally) })),
+            Ok(mesh) => Ok(Ok(FittedFace { triangulation: mesh.triangulation, decided: mesh.decided, tally: Some(mesh.tally) })),
             Err(Failure::NoMesh(NoMesh::TooManyNodes)) if limits.chord.or(limits.angle).is_some() => Err(self.too_many_for_limits()),
             Err(Failure::NoMesh(reason)) => Ok(Err(reason)),
             Err(Failure::Floor(needed, at)) => Err(floor_keeps(self.face_input.input, needed, at)),

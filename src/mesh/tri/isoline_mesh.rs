@@ -16,7 +16,7 @@ use crate::base::work;
 use crate::mesh::chart::affine::Chart;
 use crate::mesh::chart::outline::Outline;
 use crate::mesh::chart::parametric_surface::ParametricSurface;
-use crate::mesh::request::decider::{Decider, Tally};
+use crate::mesh::request::decider::{Decided, Tally};
 use crate::mesh::request::limits::Limits;
 use crate::mesh::request::sources::Sources;
 use crate::mesh::tri::fill::{Filling, fill};
@@ -67,7 +67,7 @@ pub struct IsolineMesh {
     /// Its cells.
     pub tally: Tally,
     /// What decided how small they are.
-    pub deciders: Vec<Decider>,
+    pub decided: Decided,
 }
 
 type IsolineResult<T> = std::result::Result<T, Failure>;
@@ -182,11 +182,11 @@ impl IsolineMesher<'_> {
         }
         triangulation.size = vec![self.input.size; triangulation.p.len()];
         let tally = self.tally(&corners);
-        let deciders = self.deciders(&corners, &triangulation);
+        let decided = self.decided(&corners, &triangulation);
         let mut triangulation = Triangulation::new(triangulation.p, triangulation.xy, triangulation.size, triangulation.fixed, &all, &kept);
         lock(&mut triangulation, outline);
         triangulation.lift_flat();
-        Ok(Some(IsolineMesh { triangulation, tally, deciders }))
+        Ok(Some(IsolineMesh { triangulation, tally, decided }))
     }
 
     /// Triangles of the cells that no border crosses, and the cells of which some exceed the limits, with their cuts.

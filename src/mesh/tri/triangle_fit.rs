@@ -16,7 +16,7 @@ use crate::mesh::chart::outline::Outline;
 use crate::mesh::chart::parametric_surface::{ParametricSurface, SizeField, UniformSize};
 use crate::mesh::deviation::edge_length::{self, EdgePlace};
 use crate::mesh::deviation::poles;
-use crate::mesh::request::decider::{Decider, Tally, Why};
+use crate::mesh::request::decider::{Decided, Tally, Why};
 use crate::mesh::request::fault::{MeshLimit, SizeFault};
 use crate::mesh::request::limits::Limits;
 use crate::mesh::request::methods::{Elements, Method};
@@ -55,7 +55,7 @@ pub(crate) struct FaceFit<'a> {
 pub(crate) struct FittedFace {
     pub(crate) triangulation: Triangulation,
     /// What decided their sizes.
-    pub(crate) deciders: Vec<Decider>,
+    pub(crate) decided: Decided,
     /// The cells between lines of constant u and v, where they were made of such.
     pub(crate) tally: Option<Tally>,
 }
@@ -109,8 +109,8 @@ pub(crate) fn fitted(face_input: &FaceInput, face: &Face, chart: &Chart, outline
         return Err(fit.too_large(&field, None));
     }
     Ok(triangulation.map(|triangulation| {
-        let deciders = fit.deciders(&field, &triangulation);
-        FittedFace { triangulation, deciders, tally: None }
+        let decided = fit.decided(&field, &triangulation);
+        FittedFace { triangulation, decided, tally: None }
     }))
 }
 
@@ -330,9 +330,9 @@ impl FaceFit<'_> {
         Ok(worst)
     }
 
-    /// What decided the sizes, with the number of inner nodes and one of them.
-    pub(crate) fn deciders(&self, field: &GradedSize, triangulation: &Triangulation) -> Vec<Decider> {
-        let mut found: Vec<Decider> = Vec::new();
+    /// What decided the sizes at all nodes.
+    pub(crate) fn decided(&self, field: &GradedSize, triangulation: &Triangulation) -> Decided {
+        let mut found = Decided::default();
         let (most, least) = field.range;
         for n in 0..triangulation.p.len() {
             let (xy, p) = (triangulation.xy[n], triangulation.p[n]);
@@ -346,14 +346,9 @@ impl FaceFit<'_> {
                 Some(source) => Why::Refined(field.sources.items()[source.item as usize].tag as usize),
                 None => Why::Size,
             };
-            let inner = usize::from(n >= triangulation.fixed as usize);
-            match found.iter_mut().find(|d| d.why == why) {
-                Some(decider) if decider.nodes == 0 && inner == 1 => (decider.nodes, decider.at) = (1, p),
-                Some(decider) => decider.nodes += inner,
-                None => found.push(Decider { why, nodes: inner, at: p }),
-            }
+            let length = by_sources.min(bends).max(least * field.spacing) / field.spacing;
+            found.push(why, length, p, n >= triangulation.fixed as usize);
         }
-        found.sort_by_key(|d| d.why);
-        found
+        found.sorted()
     }
 }

@@ -1,9 +1,7 @@
 //! The summary of a face triangulated between isolines: its cells, how far their marks agree with the winding, and what decided their sizes.
 
-use std::collections::BTreeMap;
-
 use crate::base::job;
-use crate::mesh::request::decider::{Decider, Tally, Why};
+use crate::mesh::request::decider::{Decided, Tally, Why};
 use crate::mesh::tri::isoline_mesh::IsolineMesher;
 use crate::mesh::tri::isoline_mesh::corners::CellCorners;
 use crate::mesh::tri::marks::{corners, marks};
@@ -38,17 +36,21 @@ impl IsolineMesher<'_> {
         tally
     }
 
-    /// What decided, with the number of nodes inside.
-    pub(crate) fn deciders(&self, corners: &CellCorners, triangulation: &Triangulation) -> Vec<Decider> {
-        let mut found: BTreeMap<Why, Decider> = BTreeMap::new();
+    /// What decided the cells round each node; no lengths of edges are asked here but the size.
+    pub(crate) fn decided(&self, corners: &CellCorners, triangulation: &Triangulation) -> Decided {
+        let mut why_of = vec![Why::Size; triangulation.p.len()];
         for (corner, node) in corners.all.iter().zip(&corners.node) {
             job::poll();
             let Some(n) = node.filter(|n| *n >= triangulation.fixed) else { continue };
             let smallest = |k: &u32| self.cells.all()[*k as usize].width().element_product();
             let leaf = self.cells.around(corner.at).into_iter().min_by(|a, b| smallest(a).total_cmp(&smallest(b)));
-            let why = leaf.map_or(Why::Size, |k| self.cells.all()[k as usize].why);
-            found.entry(why).or_insert(Decider { why, nodes: 0, at: triangulation.p[n as usize] }).nodes += 1;
+            why_of[n as usize] = leaf.map_or(Why::Size, |k| self.cells.all()[k as usize].why);
         }
-        found.into_values().collect()
+        let mut found = Decided::default();
+        for (n, (p, why)) in triangulation.p.iter().zip(why_of).enumerate() {
+            let length = if why == Why::Size { self.input.size } else { f64::NAN };
+            found.push(why, length, *p, n >= triangulation.fixed as usize);
+        }
+        found.sorted()
     }
 }
