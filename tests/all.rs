@@ -73,5 +73,6 @@ mod sweeps;
 mod triangulations;
 mod trims;
 mod view;
+mod view_compare;
 mod view_frames;
 mod walls;

@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::cli::Terminal;
-use crate::cli::options::Options;
 use crate::cli::view::command::{PAGE, open};
 use crate::cli::view::model::Script;
 use crate::cli::view::server::{Server, Settings};
@@ -42,7 +41,7 @@ impl Viewing {
         let file = folder.unwrap_or(Path::new(".")).join(format!(".loft-session-{}.loft", std::process::id()));
         let served = fs::write(&file, notebook.saved_text()).map_err(|error| format!("cannot write {}: {error}", file.display()));
         let served = served.and_then(|()| {
-            let model = ShownModel::new("session", &file, &Options::default());
+            let model = ShownModel::new("session", &file, &[], &[]);
             let page = Arc::new(PAGE.as_bytes().to_vec());
             let settings = Settings { script: file.clone(), port: None, page, sets: Vec::new() };
             Server::start(settings, Box::new(model), Arc::new(Session)).map_err(|error| error.to_string())

@@ -55,7 +55,7 @@ fn run(matches: &ArgMatches, terminal: &Terminal) -> Exit {
         return terminal.wrong_usage(&format!("cannot read {name:?}: there is no such file"));
     }
     let shown = script.file_name().map_or(name.clone(), |file| file.to_string_lossy().into_owned());
-    let model = ShownModel::new(&shown, script, &options);
+    let model = ShownModel::new(&shown, script, &options.allow, &options.sets);
     match matches.get_one::<PathBuf>("html") {
         Some(file) => write_file(model, script, file, terminal),
         None => serve(model, script, options.sets, matches, terminal),

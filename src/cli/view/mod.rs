@@ -12,6 +12,7 @@ pub mod http;
 pub mod listen;
 pub mod model;
 pub mod one_file;
+pub mod revision;
 pub mod routes;
 pub mod script_file;
 pub mod server;

@@ -1,14 +1,14 @@
 //! The model behind the page: evaluations by the session, and frames as JSON and bytes.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 use std::sync::Arc;
 use std::time::Instant;
 
 use super::model::{Buffer, Compare, Evaluated, Evaluation, Frame, Model, Progress, Request, Watched};
+use super::revision::Revision;
 use crate::base::job::Job;
 use crate::cli::interrupt;
-use crate::cli::options::Options;
 use crate::session::guard::Bug;
 use crate::session::live::Clock;
 use crate::session::view::frame::{self, Said};
@@ -31,7 +31,7 @@ pub struct ShownModel {
 /// What another state of the model is made of.
 #[derive(PartialEq)]
 struct OtherState {
-    text: String,
+    revision: Revision,
     sets: Vec<(String, String)>,
     chord_error: Option<f64>,
 }
@@ -52,12 +52,14 @@ impl Watched for WatchedJob {
 
 impl ShownModel {
     /// Of a script, with the name under which pages show it.
-    pub fn new(name: &str, script: &Path, options: &Options) -> Self {
+    ///
+    /// `allow` are further places that may be read, `sets` the params that the command line sets.
+    pub fn new(name: &str, script: &Path, allow: &[PathBuf], sets: &[(String, String)]) -> Self {
         let started = Instant::now();
         let clock: Clock = Arc::new(move || started.elapsed().as_secs_f64());
         let shown = name.to_owned();
-        let viewer = Viewer::new(&shown, Some(script), &options.allow, clock.clone());
-        let (allow, sets) = (options.allow.clone(), options.sets.clone());
+        let viewer = Viewer::new(&shown, Some(script), allow, clock.clone());
+        let (allow, sets) = (allow.to_vec(), sets.to_vec());
         Self { viewer, other: None, name: shown, script: script.to_owned(), allow, sets, clock }
     }
 
@@ -77,22 +79,19 @@ impl ShownModel {
 
     /// The state to compare with, under the same params; `None` when it was stopped.
     fn other(&mut self, compare: &Compare, wanted: &Wanted, job: &Job) -> Option<frame::Compare> {
-        let (with, text) = match compare {
-            Compare::Golden => {
-                let why = "a golden says what a model measures and holds no shapes; compare with a revision, such as HEAD";
-                ("golden".to_owned(), Err(why.to_owned()))
-            }
-            Compare::Revision(revision) => (format!("revision:{revision}"), self.at_revision(revision)),
+        let (with, revision) = match compare {
+            Compare::Golden => ("golden".to_owned(), Revision::of_golden(&self.script)),
+            Compare::Revision(name) => (format!("revision:{name}"), Revision::named(&self.script, name)),
         };
         let failed = |why: String| Some(frame::Compare { with: with.clone(), things: Vec::new(), failed: Some(why) });
-        let text = match text {
-            Ok(text) => text,
+        let found = revision.and_then(|revision| Ok((revision.text(&self.script)?, revision)));
+        let (text, revision) = match found {
+            Ok(found) => found,
             Err(why) => return failed(why),
         };
-        let state = OtherState { text, sets: wanted.sets.clone(), chord_error: wanted.chord_error };
+        let state = OtherState { revision, sets: wanted.sets.clone(), chord_error: wanted.chord_error };
         if self.other.as_ref().is_none_or(|(known, _)| *known != state) {
-            let mut viewer = Viewer::new(&self.name, Some(&self.script), &self.allow, self.clock.clone());
-            match viewer.show(&Wanted { text: state.text.clone(), ..wanted.clone() }, job) {
+            match self.at_revision(&state.revision, &Wanted { text, ..wanted.clone() }, job) {
                 Ok(view) => self.other = Some((state, view?)),
                 Err(bug) => return failed(bug.what),
             }
@@ -101,15 +100,22 @@ impl ShownModel {
         Some(frame::Compare { with, things, failed: None })
     }
 
-    /// The text of the script at a revision.
-    fn at_revision(&self, revision: &str) -> Result<String, String> {
-        let folder = self.script.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let file = self.script.file_name().unwrap_or_default().to_string_lossy();
-        let output = Command::new("git").arg("-C").arg(folder).args(["show", &format!("{revision}:./{file}")]).output();
-        match output {
-            Ok(output) if output.status.success() => Ok(String::from_utf8_lossy(&output.stdout).into_owned()),
-            Ok(output) => Err(String::from_utf8_lossy(&output.stderr).trim().to_owned()),
-            Err(error) => Err(format!("git cannot be run: {error}")),
+    /// The model with all files that it reads as they were then; those of no repository, and what is no text, as they are.
+    fn at_revision(&self, revision: &Revision, wanted: &Wanted, job: &Job) -> Result<Option<View>, Bug> {
+        let mut viewer = Viewer::new(&self.name, Some(&self.script), &self.allow, self.clock.clone());
+        let mut texts: BTreeMap<PathBuf, Option<Arc<str>>> = BTreeMap::new();
+        loop {
+            let view = viewer.show(wanted, job)?;
+            let unknown: Vec<PathBuf> = viewer.files().iter().filter(|file| !texts.contains_key(*file)).cloned().collect();
+            let found: Vec<(PathBuf, Option<Arc<str>>)> =
+                unknown.into_iter().map(|file| (file.clone(), revision.text(&file).ok().map(Arc::from))).collect();
+            let is_new = found.iter().any(|(_, text)| text.is_some());
+            texts.extend(found);
+            if view.is_none() || !is_new {
+                return Ok(view);
+            }
+            // The files of then may read others.
+            viewer.set_unsaved(texts.iter().filter_map(|(file, text)| Some((file.clone(), text.clone()?))).collect());
         }
     }
 }
@@ -124,7 +130,8 @@ impl Model for ShownModel {
         let moved = request.sets.iter().filter(|(name, _)| is_known(name));
         let sets = moved.map(|(name, text)| (name.clone(), joined(text))).collect();
         let wanted = Wanted { number: request.number, text, sets, chord_error: request.chord_error };
-        let mut view = match self.viewer.show(&wanted, &job) {
+        let mut early = |view: View| evaluation.show_partial(packed(&view));
+        let mut view = match self.viewer.show_early(&wanted, &job, &mut early) {
             Ok(Some(view)) => view,
             Ok(None) => return Evaluated::default(),
             Err(bug) => after_bug(request.number, self.viewer.last().clone(), &self.name, &bug),
