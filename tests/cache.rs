@@ -79,7 +79,7 @@ fn process(script: &Path, text: &str, out: &Path, cache: Option<&Path>) -> Found
     let outcome: Outcome = match cache {
         Some(cache) => {
             let mut kept = Kept::on(Some(Arc::new(Cache::new(cache))));
-            guarded(|| run_again(&task, &disk, &job, Again { kept: &mut kept, light: false, look: &mut |_| {} })).unwrap()
+            guarded(|| run_again(&task, &disk, &job, Again { kept: &mut kept, light: false, look: &mut |_| {}, shaped: None })).unwrap()
         }
         None => guarded(|| run(&task, &disk, &job)).unwrap(),
     };

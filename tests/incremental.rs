@@ -57,7 +57,7 @@ impl Folder {
         };
         let job = Job::default();
         let outcome: Outcome = match kept {
-            Some(kept) => guarded(|| run_again(&task, &disk, &job, Again { kept, light: false, look: &mut |_| {} })).unwrap(),
+            Some(kept) => guarded(|| run_again(&task, &disk, &job, Again { kept, light: false, look: &mut |_| {}, shaped: None })).unwrap(),
             None => guarded(|| run(&task, &disk, &job)).unwrap(),
         };
         let mut files: Vec<(String, Vec<u8>)> =
@@ -394,7 +394,7 @@ fn told(text: &str, kept: Option<&mut Kept>) -> Vec<(String, String, Option<Stri
         clock: &clock,
     };
     let outcome = match kept {
-        Some(kept) => run_again(&task, &disk, &job, Again { kept, light: false, look: &mut |_| {} }),
+        Some(kept) => run_again(&task, &disk, &job, Again { kept, light: false, look: &mut |_| {}, shaped: None }),
         None => run(&task, &disk, &job),
     };
     let line =

@@ -64,6 +64,10 @@ impl Model for Echo {
                     let bytes = (0..size).map(|i| (i.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
                     buffers.push(Buffer { key: format!("{:032x}", size), bytes: Arc::new(bytes) });
                 }
+                Some(("shows", part)) => {
+                    let json = json!({ "loft": 1, "number": request.number - 1, "partial": true, "text": part });
+                    evaluation.show_partial(Frame { json: json.to_string(), buffers: Vec::new() });
+                }
                 _ if line == "panics" => panic!("as it was told"),
                 _ => {}
             }
@@ -309,7 +313,7 @@ fn the_page_and_the_frame_are_served() {
     assert!(packed.headers.contains("Content-Encoding: gzip") && packed.body.len() < page.body.len() / 10);
     assert!(!view.ask("GET", "", "Accept-Encoding: gzip;q=0\r\n", "").headers.contains("Content-Encoding"));
     let frame = view.frame_of("hello\n");
-    assert_eq!((frame["number"].as_u64(), frame["sets"].as_array().map(Vec::len)), (Some(1), Some(0)));
+    assert_eq!((frame["number"].as_u64(), frame["sets"].as_array().map(Vec::len)), (Some(2), Some(0)));
 }
 
 #[test]
@@ -591,7 +595,7 @@ fn a_script_that_goes_away_and_comes_back() {
     assert_eq!(tab.event().unwrap(), ("gone".to_owned(), json!({ "file": "model.loft" })));
     assert_eq!(view.get("frame").status, 204);
     view.save("one\n");
-    assert_eq!(tab.wait_for("frame"), json!({ "number": 1 }));
+    assert_eq!(tab.wait_for("frame"), json!({ "number": 2 }));
     fs::remove_file(&view.script).unwrap();
     tab.wait_for("gone");
     // Who comes now is told as well; nothing is evaluated.
@@ -666,7 +670,7 @@ fn a_newer_save_stops_the_evaluation() {
     let view = View::new("newer", Some("takes 60000\n"));
     let mut tab = view.tab("a", 0);
     let work = tab.wait_for("work");
-    assert_eq!((work["number"].as_u64(), work["phase"].as_str(), work["of"].as_u64()), (Some(1), Some("waiting"), Some(100)));
+    assert_eq!((work["number"].as_u64(), work["phase"].as_str(), work["of"].as_u64()), (Some(2), Some("waiting"), Some(100)));
     view.replace("quick\n");
     let began = Instant::now();
     assert_eq!(tab.frame(), 2);
@@ -703,7 +707,7 @@ fn the_user_stops_an_evaluation() {
             break;
         }
     }
-    assert_eq!(view.frame_of("one\n")["number"], 1);
+    assert_eq!(view.frame_of("one\n")["number"], 2);
     view.save("two\n");
     view.frame_of("two\n");
 }
@@ -798,11 +802,38 @@ fn an_old_frame_never_overwrites_a_new_one() {
 }
 
 #[test]
+fn a_partial_frame_comes_before_the_whole_one_and_not_after_a_stop() {
+    let view = View::new("partial", Some("one\n"));
+    view.frame_of("one\n");
+    let mut tab = view.tab("t", 2);
+    view.replace("shows part\ntakes 400\n");
+    let early = view.frame_with(|frame| frame["partial"] == true);
+    assert_eq!((early["number"].as_u64(), early["text"].as_str()), (Some(3), Some("part")));
+    assert_eq!(view.frame_of("shows part\ntakes 400\n")["number"], 4);
+    assert_eq!([tab.frame(), tab.frame()], [3, 4]);
+    // A stop leaves no partial frame behind.
+    view.replace("shows part\ntakes 60000\n");
+    assert_eq!(view.frame_with(|frame| frame["partial"] == true)["number"], 5);
+    assert_eq!(view.post("stop", &json!({})).status, 200);
+    let stopped = view.frame_with(|frame| frame["partial"] != true);
+    assert_eq!(
+        (stopped["number"].as_u64(), &stopped["text"], &stopped["diagnostics"][0]["code"]),
+        (Some(6), &json!("part"), &json!("stopped"))
+    );
+    // A stopped evaluation shows no part of it any more.
+    view.replace("takes 60000\nshows late\n");
+    while tab.wait_for("work")["number"] != 8 {}
+    view.replace("two\n");
+    let frame = view.frame_of("two\n");
+    assert!(frame["number"].as_u64() > Some(8) && frame["partial"].is_null());
+}
+
+#[test]
 fn a_bug_in_the_model_is_told_and_survived() {
     let view = View::new("bug", Some("one\nbuffer 9\n"));
     view.frame_of("one\nbuffer 9\n");
     view.replace("panics\n");
-    let frame = view.frame_with(|frame| frame["number"] == 2);
+    let frame = view.frame_with(|frame| frame["number"] == 4);
     assert_eq!((frame["text"].as_str(), frame["stale"].as_bool()), (Some("one\nbuffer 9\n"), Some(true)));
     assert_eq!(frame["diagnostics"][0]["severity"], "error");
     view.save("two\n");

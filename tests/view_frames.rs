@@ -51,6 +51,16 @@ fn array(buffer: &Buffer, name: &str) -> (serde_json::Value, Vec<f64>) {
     let values = match about["type"].as_str().unwrap() {
         "f32" => (0..n).map(|k| f64::from(f32::from_le_bytes(bytes[offset + 4 * k..][..4].try_into().unwrap()))).collect(),
         "u32" => (0..n).map(|k| f64::from(u32::from_le_bytes(bytes[offset + 4 * k..][..4].try_into().unwrap()))).collect(),
+        "i16" if about["coding"] == "steps" => {
+            let step = |k: usize| f64::from(i16::from_le_bytes(bytes[offset + 2 * k..][..2].try_into().unwrap()));
+            let width = number("width");
+            let mut first = 0.0;
+            let place = |k: usize| {
+                first += if k.is_multiple_of(width) { step(k) } else { 0.0 };
+                if k.is_multiple_of(width) { first } else { first + step(k) }
+            };
+            (0..n).map(place).collect()
+        }
         "i16" => (0..n).map(|k| f64::from(i16::from_le_bytes(bytes[offset + 2 * k..][..2].try_into().unwrap())) / 32767.0).collect(),
         _ => (0..n).map(|k| f64::from(bytes[offset + k])).collect(),
     };
@@ -198,6 +208,102 @@ fn a_model_far_away_loses_nothing() {
     let wall = points(buffer(&view, "wall", Role::Faces));
     let off = wall.iter().map(|p| (p.x - 1e6).min((p.x - 1e6 - 4.0).abs()).abs()).fold(0.0, f64::max);
     assert!(!wall.is_empty() && off < 1e-6, "{off}");
+}
+
+#[test]
+fn shapes_come_before_the_rest() {
+    let mut viewer = viewer("partial", &[("roof.loft", ROOF)]);
+    let mut early = Vec::new();
+    let mut show = |number: u64, text: &str, early: &mut Vec<View>| {
+        let wanted = Wanted { number, text: text.to_owned(), ..Wanted::default() };
+        viewer.show_early(&wanted, &Job::new(), &mut |view| early.push(view)).unwrap().unwrap()
+    };
+    let whole = show(2, ROOF, &mut early);
+    let part = early.pop().expect("the first run shows its shapes");
+    assert!(part.frame.partial && part.frame.number == 1 && !whole.frame.partial && whole.frame.number == 2);
+    assert!(part.frame.checks.is_empty() && part.frame.reports.is_empty());
+    assert_eq!(
+        (&part.frame.params, &part.frame.sources, &part.frame.units),
+        (&whole.frame.params, &whole.frame.sources, &whole.frame.units)
+    );
+    let shapes: Vec<&str> = whole.frame.things.iter().filter(|t| t.kind != "mesh" && t.kind != "group").map(|t| &*t.name).collect();
+    for name in shapes {
+        assert_eq!(thing(&part, name).buffers, thing(&whole, name).buffers, "{name}");
+        assert!(thing(&part, name).buffers.iter().all(|row| part.buffers.contains_key(&row.key)));
+    }
+    assert!(!names(&part).contains(&"fine"), "a mesh is not made for it");
+    // The clock of these tests stands: the rest took no time, so that nothing is shown early again.
+    let again = show(4, &ROOF.replace("(0, 0, -1)", "(0, 0, -1.1)"), &mut early);
+    assert!(early.is_empty() && again.frame.number == 4);
+}
+
+#[test]
+fn what_is_not_made_yet_stays_with_a_mark() {
+    let now = Arc::new(std::sync::atomic::AtomicU64::new(0));
+    let ticks = now.clone();
+    // Each look at the clock takes a second, so that all runs are long.
+    let clock = Arc::new(move || ticks.fetch_add(1, std::sync::atomic::Ordering::Relaxed) as f64);
+    let mut viewer = Viewer::new("roof.loft", None, &[] as &[PathBuf], clock);
+    let mut early = Vec::new();
+    let mut show = |number: u64, text: &str, early: &mut Vec<View>| {
+        let wanted = Wanted { number, text: text.to_owned(), ..Wanted::default() };
+        viewer.show_early(&wanted, &Job::new(), &mut |view| early.push(view)).unwrap().unwrap()
+    };
+    let first = show(2, ROOF, &mut early);
+    let second = show(4, &ROOF.replace("(0, 0, -1)", "(0, 0, -1.1)"), &mut early);
+    let [_, part] = &early[..] else { panic!("{} partial frames", early.len()) };
+    assert!(part.frame.number == 3 && thing(part, "fine").stale && thing(part, "fine").unmade.is_none());
+    assert_eq!(thing(part, "fine").buffers, thing(&first, "fine").buffers);
+    assert!(thing(part, "fine").buffers.iter().all(|row| part.buffers.contains_key(&row.key)));
+    assert_eq!(thing(part, "wall").buffers, thing(&second, "wall").buffers);
+    assert_ne!(thing(part, "wall").buffers, thing(&first, "wall").buffers);
+    assert!(thing(part, "roof").facts.contains(&("patches".to_owned(), "1".to_owned())), "{:?}", thing(part, "roof").facts);
+    assert!(!second.frame.stale && !thing(&second, "fine").stale);
+}
+
+const SIZES: &str = "units m
+curve a = line((0, 0, 0), (4, 0, 0))
+curve b = line((4, 0, 0), (4, 4, 0))
+curve c = line((4, 4, 0), (0, 4, 0))
+curve d = line((0, 4, 0), (0, 0, 0))
+surface flat = coons(a, b, c, d)
+mesh free of flat { method: delaunay  size: 0.5m  on a { count: 16 }  near (2, 2, 0) { size: 0.1m } }
+mesh even of flat { method: mapped  size: 0.5m  on b { count: 16 } }
+";
+
+#[test]
+fn meshes_tell_what_decided_their_sizes() {
+    let mut viewer = viewer("sizes", &[("sizes.loft", SIZES)]);
+    let view = show(&mut viewer, 1, SIZES);
+    assert!(view.frame.ok, "{:?}", view.frame.diagnostics);
+    let found = |name: &str| {
+        let mesh = buffer(&view, name, Role::Mesh);
+        let (header, of) = array(mesh, "decided");
+        let words: Vec<String> = header["deciders"].as_array().unwrap().iter().map(|w| w.as_str().unwrap().to_owned()).collect();
+        let asked = array(mesh, "asked").1;
+        assert_eq!((of.len(), asked.len()), (points(mesh).len(), points(mesh).len()));
+        points(mesh).into_iter().zip(of.into_iter().map(move |k| words[k as usize].clone())).zip(asked).collect::<Vec<_>>()
+    };
+    let close = |a: f64, b: f64| (a - b).abs() < 1e-6 * b;
+    for ((p, word), asked) in found("free") {
+        assert!(word != "not known" && asked > 0.0 && asked <= 0.500_001, "{p} {word} {asked}");
+        let off = p.distance(DVec3::new(2.0, 2.0, 0.0));
+        if off < 0.05 {
+            assert!(word == "size 0.1 near (2, 2, 0)" && close(asked, 0.1), "{p} {word} {asked}");
+        }
+        if p.y == 0.0 && p.x > 0.5 && p.x < 3.5 {
+            assert!(word == "count 16 on a" && close(asked, 0.25), "{p} {word} {asked}");
+        }
+        if p.x == 4.0 && (p.y - 3.0).abs() < 0.3 {
+            assert!(word == "the size" && close(asked, 0.5), "{p} {word} {asked}");
+        }
+    }
+    // Rows lead from side to side: the count of one side decides them.
+    for ((p, word), asked) in found("even") {
+        if p.y > 0.1 && p.y < 3.9 && p.x > 0.1 {
+            assert!(word == "count 16 on b" && close(asked, 0.25), "{p} {word} {asked}");
+        }
+    }
 }
 
 #[test]

@@ -116,7 +116,7 @@ pub fn case(model: &Model, variant: Variant, options: &Options, job: &Arc<Job>, 
         clock: &clock,
     };
     guarded(|| match kept {
-        Some(kept) => run::run_again(&task, disk, job, Again { kept, light: false, look: &mut |_| {} }),
+        Some(kept) => run::run_again(&task, disk, job, Again { kept, light: false, look: &mut |_| {}, shaped: None }),
         None => run::run(&task, disk, job),
     })
 }

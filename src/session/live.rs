@@ -18,8 +18,6 @@ pub type Clock = Arc<dyn Fn() -> f64 + Send + Sync>;
 pub enum Depth {
     /// Values, network, surfaces and checks; meshes that nothing asks for, areas and volumes are left out.
     Values,
-    /// Everything but exports and pictures.
-    Shown,
     /// Everything but writing: what exports and pictures say is said.
     Report,
     /// Everything; outputs are written.
@@ -33,6 +31,14 @@ struct Destination<'a> {
     /// The one picture that is written instead of the outputs of the script.
     picture: Option<&'a Wanted>,
     outputs: Outputs,
+}
+
+/// Who is shown a model that is being run.
+pub struct Looks<'l> {
+    /// When everything is evaluated.
+    pub whole: &'l mut (dyn FnMut(&mut Cx<'_>) + Send),
+    /// When only the shapes are.
+    pub shaped: Option<&'l mut (dyn FnMut(&mut Cx<'_>) + Send)>,
 }
 
 /// One script and what its last run left.
@@ -86,10 +92,18 @@ impl Live {
     ) -> Result<Outcome, Bug> {
         let outputs = match depth {
             Depth::Files => Outputs::Written,
-            Depth::Shown => Outputs::Skipped,
             Depth::Values | Depth::Report => Outputs::Counted,
         };
-        self.evaluate(text, sets, Destination { folder: None, picture: None, outputs }, depth, job, look)
+        self.evaluate(text, sets, Destination { folder: None, picture: None, outputs }, depth, job, Looks { whole: look, shaped: None })
+    }
+
+    /// Runs the text for somebody who watches it, with everything but exports and pictures: `shaped` is shown the model as soon as its shapes are evaluated,
+    /// `whole` when all is.
+    ///
+    /// Fails as [`Live::run`].
+    pub fn run_shown(&mut self, text: &str, sets: &[(String, String)], job: &Job, looks: Looks) -> Result<Outcome, Bug> {
+        let to = Destination { folder: None, picture: None, outputs: Outputs::Skipped };
+        self.evaluate(text, sets, to, Depth::Report, job, looks)
     }
 
     /// Runs the text and writes one picture into a folder, and nothing else.
@@ -97,7 +111,7 @@ impl Live {
     /// Fails as [`Live::run`].
     pub fn draw(&mut self, text: &str, sets: &[(String, String)], folder: &Path, wanted: &Wanted, job: &Job) -> Result<Outcome, Bug> {
         let to = Destination { folder: Some(folder), picture: Some(wanted), outputs: Outputs::Written };
-        self.evaluate(text, sets, to, Depth::Values, job, &mut |_| {})
+        self.evaluate(text, sets, to, Depth::Values, job, Looks { whole: &mut |_| {}, shaped: None })
     }
 
     fn evaluate(
@@ -107,7 +121,7 @@ impl Live {
         to: Destination,
         depth: Depth,
         job: &Job,
-        look: &mut (dyn FnMut(&mut Cx<'_>) + Send),
+        looks: Looks,
     ) -> Result<Outcome, Bug> {
         let Destination { folder, picture, outputs } = to;
         let disk = Disk::new(self.script.as_deref(), folder, &self.allow, outputs).map_err(|error| Bug { what: error.to_string() })?;
@@ -117,7 +131,9 @@ impl Live {
         let task = Task { picture, ..Task::new(&self.name, text.as_bytes(), sets, &clock) };
         let mut kept = std::mem::take(&mut self.kept);
         let result = guarded(|| {
-            let again = Again { kept: &mut kept, light: depth == Depth::Values, look };
+            let Looks { whole: look, shaped } = looks;
+            let shaped = shaped.map(|shaped| shaped as &mut (dyn FnMut(&mut Cx<'_>) + Send));
+            let again = Again { kept: &mut kept, light: depth == Depth::Values, look, shaped };
             run_again(&task, &disk, job, again)
         });
         self.read = disk.paths_read();

@@ -29,7 +29,7 @@ pub fn run(task: &Task, disk: &dyn Store, job: &Job) -> Outcome {
 /// Runs it and shows `look` the evaluated model before it goes.
 pub fn run_seen(task: &Task, disk: &dyn Store, job: &Job, look: &mut dyn FnMut(&mut Cx<'_>)) -> Outcome {
     let stages = Stages::new(task.clock);
-    let (mut outcome, memory) = Run::new(task, Cx::new(disk, &stages, job), disk, &stages).whole(look);
+    let (mut outcome, memory) = Run::new(task, Cx::new(disk, &stages, job), disk, &stages).whole(look, None);
     outcome.remains.memory = Some(Box::new(memory));
     outcome
 }
@@ -42,18 +42,20 @@ pub struct Again<'k> {
     pub light: bool,
     /// Is shown the evaluated model.
     pub look: &'k mut (dyn FnMut(&mut Cx<'_>) + Send),
+    /// Is shown the model while only its shapes are evaluated, where somebody wants that.
+    pub shaped: Option<&'k mut (dyn FnMut(&mut Cx<'_>) + Send)>,
 }
 
 /// Runs it again: what did not change since the run before is taken over. The outcome is the same to the last bit as
 /// that of [`run`].
 pub fn run_again(task: &Task, disk: &dyn Store, job: &Job, again: Again) -> Outcome {
-    let Again { kept, light, look } = again;
+    let Again { kept, light, look, shaped } = again;
     let Kept { memory, stages } = std::mem::take(kept);
     let found = stages.cache.as_ref().map_or(0, |cache| cache.found());
     let stages = Stages::recalling(task.clock, stages);
     let mut cx = Cx::new(disk, &stages, job);
     cx.recall_from(memory);
-    let (mut outcome, memory) = Run { light, ..Run::new(task, cx, disk, &stages) }.whole(look);
+    let (mut outcome, memory) = Run { light, ..Run::new(task, cx, disk, &stages) }.whole(look, shaped);
     (outcome.reused, outcome.reused_faces) = (memory.reused() + stages.reused(), stages.reused_faces());
     let mut stages = stages.into_kept();
     outcome.from_cache = stages.cache.as_ref().map_or(0, |cache| cache.found()) - found;
@@ -104,14 +106,14 @@ impl<'r> Run<'r> {
         }
     }
 
-    /// From the text to the end; `look` is shown what was evaluated.
-    fn whole(mut self, look: &mut dyn FnMut(&mut Cx<'_>)) -> (Outcome, Memory) {
+    /// From the text to the end; `look` is shown what was evaluated, `shaped` the shapes before.
+    fn whole(mut self, look: &mut dyn FnMut(&mut Cx<'_>), shaped: Option<&mut (dyn FnMut(&mut Cx<'_>) + Send)>) -> (Outcome, Memory) {
         match std::str::from_utf8(self.task.text) {
             Ok(text) => {
                 let job = self.cx.job;
                 // Whether it was stopped is checked at the end.
                 let all = || {
-                    self.evaluate(text);
+                    self.evaluate(text, shaped);
                     look(&mut self.cx);
                 };
                 // What is pending at the end counts as well.
@@ -132,7 +134,7 @@ impl<'r> Run<'r> {
     }
 
     /// Everything up to the outputs on their way.
-    fn evaluate(&mut self, text: &str) {
+    fn evaluate(&mut self, text: &str, shaped: Option<&mut (dyn FnMut(&mut Cx<'_>) + Send)>) {
         let clock = self.task.clock;
         let start = clock();
         let name = if self.task.name == "-" { "<stdin>" } else { self.task.name };
@@ -152,7 +154,10 @@ impl<'r> Run<'r> {
         let parsed = clock();
         drop(phase);
         let phase = self.cx.job.phase("curves");
-        self.cx.evaluate_all();
+        match shaped {
+            Some(shaped) => self.cx.evaluate_shaped(Some(&mut |cx| shaped(cx))),
+            None => self.cx.evaluate_all(),
+        }
         self.cx.leave();
         drop(phase);
         let phase = self.cx.job.phase("measuring");

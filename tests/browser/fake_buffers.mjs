@@ -4,20 +4,29 @@ import { createHash } from 'node:crypto';
 
 const TYPES = { f32: Float32Array, i16: Int16Array, u32: Uint32Array, u8: Uint8Array };
 
-/** One buffer, `{ key, bytes, role }`; `arrays` holds `name: [type, width, values]`. */
+/** A table of indices in steps, as the program sends it, or plain where a step is too long. */
+export function inSteps(width, indices) {
+  const steps = indices.map((index, i) => {
+    const start = i - (i % width);
+    return index - (i === start ? (indices[i - width] ?? 0) : indices[start]);
+  });
+  return steps.some((step) => Math.abs(step) > 32767) ? ['u32', width, indices] : ['i16', width, steps, 'steps'];
+}
+
+/** One buffer, `{ key, bytes, role }`; `arrays` holds `name: [type, width, values, coding]`. */
 export function buffer(role, origin, box, arrays, more = {}) {
   const described = {};
   let size = 0;
   const list = Object.entries(arrays)
     .filter(([, array]) => array)
-    .map(([name, [type, width, values]]) => {
+    .map(([name, [type, width, values, coding]]) => {
       const typed = TYPES[type].from(values);
-      return { name, type, width, typed };
+      return { name, type, width, typed, coding };
     });
   const header = (from) => {
     size = from;
-    for (const { name, type, width, typed } of list) {
-      described[name] = { type, width, count: typed.length / width, offset: size };
+    for (const { name, type, width, typed, coding } of list) {
+      described[name] = { type, width, count: typed.length / width, offset: size, coding };
       size += Math.ceil(typed.byteLength / 8) * 8;
     }
     return JSON.stringify({ role, origin, box, arrays: described, ...more });
@@ -111,7 +120,7 @@ export function surface(name, patches, { origin = [0, 0, 0], cells = [16, 16], c
       {
         positions: ['f32', 3, all.positions],
         normals: ['i16', 3, all.normals],
-        triangles: ['u32', 3, all.triangles],
+        triangles: closed ? ['u32', 3, all.triangles] : inSteps(3, all.triangles),
         face: ['u32', 1, all.face],
         curvature: ['f32', 2, all.curvature],
       },
@@ -142,8 +151,11 @@ export function points(names, places, origin = [0, 0, 0]) {
   return buffer('points', origin, boxOf(places.flat(), origin), { positions: ['f32', 3, places.flat()] }, { names });
 }
 
-/** A mesh over one patch: triangles in one half and quadrangles in the other. */
-export function mesh(at, n, m, origin = [0, 0, 0]) {
+/**
+ * A mesh over one patch: triangles in one share of it and quadrangles in the rest. Of the sizes in the last two columns
+ * of nodes nothing is known.
+ */
+export function mesh(at, n, m, origin = [0, 0, 0], share = 0.5) {
   const { positions } = patch(at, n, m);
   const triangles = [];
   const quads = [];
@@ -153,7 +165,7 @@ export function mesh(at, n, m, origin = [0, 0, 0]) {
     for (let i = 0; i < n; i++) {
       const a = j * (n + 1) + i;
       const four = [a, a + 1, a + n + 2, a + n + 1];
-      if (i < n / 2) {
+      if (i < n * share) {
         triangles.push(four[0], four[1], four[2], four[0], four[2], four[3]);
         face.push(0, 0);
       } else {
@@ -162,19 +174,20 @@ export function mesh(at, n, m, origin = [0, 0, 0]) {
       }
     }
   const nodes = positions.length / 3;
-  const decided = Array.from({ length: nodes }, (_, i) => (i % (n + 1) < n / 3 ? 1 : 0));
+  const column = (i) => i % (n + 1);
+  const decided = Array.from({ length: nodes }, (_, i) => (column(i) >= n - 1 ? 0 : column(i) < n / 3 ? 2 : 1));
   return buffer(
     'mesh',
     origin,
     boxOf(positions, origin),
     {
       positions: ['f32', 3, positions],
-      triangles: ['u32', 3, triangles],
-      quads: ['u32', 4, quads],
+      triangles: inSteps(3, triangles),
+      quads: inSteps(4, quads),
       lines: ['u32', 2, []],
       face: ['u32', 1, [...face, ...quadFace]],
       decided: ['u8', 1, decided],
-      asked: ['f32', 1, decided.map((d) => (d ? 0.2 : 0.3))],
+      asked: ['f32', 1, decided.map((d) => [NaN, 0.3, 0.2][d])],
     },
     {
       faces: [
@@ -182,7 +195,7 @@ export function mesh(at, n, m, origin = [0, 0, 0]) {
         { name: 'roof.patches[1]', area: 1 },
       ],
       groups: [{ name: 'rim', elements: [[1, n]], nodes: [] }],
-      deciders: ['size', 'chord_error'],
+      deciders: ['not known', 'the size', 'size 0.2 near (0, 0, 0)', 'chord_error'],
       first_element: 1,
     },
   );

@@ -72,6 +72,11 @@ const arch =
   (rise, shift, depth = 3) =>
   (u, v) => [shift + 2 * u, depth * v, rise * Math.sin((Math.PI * (shift + 2 * u)) / 4) * (1 + 0.25 * Math.sin(Math.PI * v))];
 
+const PLATE = [14, 10]; // Cells of the mesh `plate`.
+
+/** Where node `i` of row `j` of the plate is, for the rise that the roof has without more. */
+export const plateNode = (i, j) => arch(1.2, 0)((2 * i) / PLATE[0], j / PLATE[1]);
+
 /** A small roof with everything that a frame can hold; `broken` opens a gap in it. */
 export function roof(number, { rise = 1.2, set = {}, broken = false, origin = [0, 0, 0], compare = null, script = SCRIPT } = {}) {
   const roofs = surface('roof', [arch(rise, 0), arch(rise, 2)], { origin });
@@ -88,7 +93,7 @@ export function roof(number, { rise = 1.2, set = {}, broken = false, origin = [0
     ],
     origin,
   );
-  const plate = mesh((u, v) => arch(rise, 0)(2 * u, v), 14, 10, origin);
+  const plate = mesh((u, v) => arch(rise, 0)(2 * u, v), ...PLATE, origin);
   const buffers = [...roofs, ...walls, ...tank, south, corners, plate];
   const other = compare ? surface('roof', [arch(rise * 0.8, 0), arch(rise * 0.8, 2)], { origin }) : [];
   const at = (p) => p.map((x, i) => x + origin[i]);
@@ -219,4 +224,30 @@ export function large(number, n = 707) {
   const wave = (u, v) => [10 * u, 10 * v, Math.sin(9 * u) * Math.cos(7 * v)];
   const faces = surface('wave', [wave], { cells: [n, n] });
   return frame(number, faces, [thing('wave', 'surface', faces, 7)]);
+}
+
+/** A mesh of `2 n²` triangles. */
+export function largeMesh(number, n = 707) {
+  const wave = (u, v) => [10 * u, 10 * v, Math.sin(9 * (u - 0.5)) * Math.cos(7 * v)];
+  const made = mesh(wave, n, n, [0, 0, 0], 1);
+  return frame(number, [made], [thing('net', 'mesh', [made], 9, { visible: true })]);
+}
+
+/**
+ * A model while its evaluation still runs: shapes, but nothing of checks and tables. Its meshes are those of `before`,
+ * not there at all, or listed without buffers.
+ */
+export function partial(model, { before = null, listed = false } = {}) {
+  const things = model.frame.things.flatMap((one) => {
+    if (one.kind !== 'mesh') return [one];
+    const old = before?.frame.things.find(({ name }) => name === one.name);
+    if (old) return [{ ...one, buffers: old.buffers, stale: true, pending: true }];
+    return listed ? [{ ...one, buffers: [], unmade: null, pending: true }] : [];
+  });
+  const { loft, number, title, units, box, chord_error, sources, params } = model.frame;
+  const nothing = { checks: [], reports: [], diagnostics: [], pictures: [], outputs: [], compare: null, ok: false, seconds: 0 };
+  return {
+    frame: { loft, number, title, units, box, chord_error, sources, params, things, ...nothing, partial: true },
+    buffers: new Map([...(before?.buffers ?? []), ...model.buffers]),
+  };
 }

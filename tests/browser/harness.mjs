@@ -28,6 +28,8 @@ export async function over(model, body, settings = {}) {
 export const picture = (page, name) => page.screenshot({ path: `${PICTURES}${name}.png` });
 export const tab = (page, name) => page.click(`#tab-${name}`);
 
+export const middle = (a, b) => a.map((x, i) => (x + b[i]) / 2);
+
 /** Clicks where an absolute point is on the screen. */
 export async function clickAt(page, point) {
   const box = await canvasBox(page);

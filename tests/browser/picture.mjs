@@ -75,10 +75,10 @@ test('elements and nodes of a mesh are picked; quality has a histogram that filt
     const [x, y] = await page.evaluate(() => window.loftView.toScreen([2.45, 0.45, 1.25]));
     const hit = await page.evaluate(([a, b]) => window.loftView.pick(a, b), [x, y]);
     assert.equal(hit.thing, 'plate');
-    assert.ok(['element', 'node'].includes(hit.kind));
+    assert.ok(['element', 'side', 'node'].includes(hit.kind));
     await page.mouse.click(box.x + x, box.y + y);
     await tab(page, 'selected');
-    assert.match(await page.locator('#pane-selected').innerText(), /plate, (element|node) \d+/);
+    assert.match(await page.locator('#pane-selected').innerText(), /plate, (element|side|node) \d+/);
     const bars = await page.locator('.histogram').boundingBox();
     await page.mouse.move(bars.x + bars.width * 0.5, bars.y + 30);
     await page.mouse.down();

@@ -1,6 +1,9 @@
 // All tests of the viewer in a real browser: `node --test tests/browser/test.mjs`, or `tests/browser/run`.
 
+import './wire.mjs';
 import './picture.mjs';
 import './panes.mjs';
 import './frames.mjs';
+import './partial.mjs';
+import './meshes.mjs';
 import './program.mjs';

@@ -1,7 +1,7 @@
 //! What the server asks of the model behind the page, and what it gets.
 
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// The model behind the page. It is asked by one thread, one evaluation after the other.
 pub trait Model: Send {
@@ -36,7 +36,7 @@ pub enum Compare {
 /// What is to be evaluated.
 #[derive(Clone, Debug, Default)]
 pub struct Request {
-    /// The number that the frame must have.
+    /// The number that the frame must have; a partial one before it has the number before.
     pub number: u64,
     /// The text of the script as it was read when it was seen to have changed.
     pub text: Arc<Vec<u8>>,
@@ -100,6 +100,7 @@ pub trait Watched: Send + Sync {
 #[derive(Default)]
 pub struct Evaluation {
     state: Mutex<State>,
+    partial: OnceLock<ShowPartial>,
 }
 
 #[derive(Default)]
@@ -108,7 +109,23 @@ struct State {
     work: Option<Arc<dyn Watched>>,
 }
 
+/// Shows a frame of what is evaluated so far.
+type ShowPartial = Box<dyn Fn(Frame) + Send + Sync>;
+
 impl Evaluation {
+    /// Frames of a part of the model go here from now on.
+    pub fn show_partial_by(&self, show: ShowPartial) {
+        // Nobody sets it again.
+        let _ = self.partial.set(show);
+    }
+
+    /// Shows a frame of what is evaluated so far, while the rest goes on; nobody sees it where nobody wants one.
+    pub fn show_partial(&self, frame: Frame) {
+        if let (Some(show), false) = (self.partial.get(), self.is_stopped()) {
+            show(frame);
+        }
+    }
+
     /// Nobody wants the result any more.
     pub fn is_stopped(&self) -> bool {
         self.state().stopped

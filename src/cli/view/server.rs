@@ -209,6 +209,12 @@ fn rounds(shared: &Arc<Shared>) {
 fn evaluate(shared: &Arc<Shared>, mut model: Box<dyn Model>) {
     while let Some((request, running)) = shared.work.next() {
         let started = SystemTime::now();
+        let (to, number) = (shared.clone(), running.number - 1);
+        running.evaluation.show_partial_by(Box::new(move |frame| {
+            if to.frames.publish(number, frame) {
+                to.events.frame(number);
+            }
+        }));
         // What a panic leaves behind is the model's business: the next evaluation finds it.
         let evaluated = catch_unwind(AssertUnwindSafe(|| model.evaluate(&request, &running.evaluation)));
         let frame = match evaluated {
@@ -218,8 +224,11 @@ fn evaluate(shared: &Arc<Shared>, mut model: Box<dyn Model>) {
                 }
                 evaluated.frame
             }
-            Err(_) => Some(bug_frame(shared, running.number)),
+            Err(_) => Some(told_frame(shared, running.number, ("error", "bug"), BUG)),
         };
+        // A partial frame must not be the last one; where an evaluation follows, that ends it.
+        let is_left = frame.is_none() && !shared.work.is_due() && shared.frames.number() == number;
+        let frame = frame.or_else(|| is_left.then(|| told_frame(shared, running.number, ("note", "stopped"), STOPPED)));
         if frame.is_some_and(|frame| shared.frames.publish(running.number, frame)) {
             shared.events.frame(running.number);
         }
@@ -227,15 +236,18 @@ fn evaluate(shared: &Arc<Shared>, mut model: Box<dyn Model>) {
     }
 }
 
-/// What the page showed before, with the news that there is a bug.
-fn bug_frame(shared: &Shared, number: u64) -> Frame {
+const BUG: &str = "a bug in loft stopped this evaluation; please report it with this script";
+const STOPPED: &str = "the evaluation was stopped; the next change of the script starts it again";
+
+/// What the page showed before, with one thing to be told: its severity and code, and its words.
+fn told_frame(shared: &Shared, number: u64, (severity, code): (&str, &str), message: &str) -> Frame {
     let (before, buffers) = shared.frames.newest_frame().unwrap_or_default();
     let mut frame: Value = serde_json::from_slice(&before).unwrap_or_else(|_| empty_frame(&shared.name));
     frame["number"] = number.into();
     frame["ok"] = false.into();
     frame["stale"] = true.into();
-    let message = "a bug in loft stopped this evaluation; please report it with this script";
-    frame["diagnostics"] = json!([{ "severity": "error", "code": "bug", "message": message, "help": null, "places": [], "points": [],
+    frame["partial"] = false.into();
+    frame["diagnostics"] = json!([{ "severity": severity, "code": code, "message": message, "help": null, "places": [], "points": [],
         "size": null, "things": [] }]);
     Frame { json: frame.to_string(), buffers }
 }

@@ -125,6 +125,11 @@ impl Work {
         self.state().stop();
     }
 
+    /// Whether another evaluation is to follow.
+    pub fn is_due(&self) -> bool {
+        self.state().is_due()
+    }
+
     /// Ends the thread of the model.
     pub fn end(&self) {
         let mut state = self.state();
@@ -145,7 +150,8 @@ impl Work {
         state.taken = state.changes;
         state.hurry = false;
         state.expected = None;
-        state.wanted.number += 1;
+        // Its partial frame has the number before.
+        state.wanted.number += 2;
         let (number, started) = (state.wanted.number, Instant::now());
         let running = Arc::new(Running { number, evaluation: Evaluation::default(), started, told: AtomicBool::new(false) });
         state.running = Some(running.clone());

@@ -20,6 +20,17 @@ use crate::lang::values::types::Ty;
 use crate::lang::values::units;
 use crate::lang::values::value::{Dim, ModuleId, Value};
 
+/// Params, and what a script draws without its meshes.
+const SHAPES: &[Keyword] = &[
+    Keyword::Use,
+    Keyword::Param,
+    Keyword::Import,
+    Keyword::Point,
+    Keyword::Curve,
+    Keyword::ModelingCurve,
+    Keyword::Surface,
+    Keyword::Shell,
+];
 /// Names listed in a note about what was not built.
 const NAMES_LISTED: usize = 12;
 /// The tolerance of a model without points, in millimetres.
@@ -59,6 +70,11 @@ impl Cx<'_> {
 
     /// Evaluates every declaration: first what needs no tolerance, then the tolerance, then the rest.
     pub fn evaluate_all(&mut self) {
+        self.evaluate_shaped(None);
+    }
+
+    /// The same; `shaped` is shown the model when the geometry and the shells of the script are evaluated, before the rest is.
+    pub fn evaluate_shaped(&mut self, shaped: Option<&mut dyn FnMut(&mut Self)>) {
         let said = self.said_tolerance();
         self.pass();
         self.fix_tolerance(said);
@@ -70,7 +86,23 @@ impl Cx<'_> {
                 }
             }
         }
+        if let Some(shaped) = shaped {
+            self.pass_shapes();
+            shaped(self);
+        }
         self.pass();
+    }
+
+    /// Evaluates the geometry and the shells of the main script.
+    fn pass_shapes(&mut self) {
+        for i in SHAPES.iter().flat_map(|keyword| self.heads(ModuleId::MAIN, *keyword)).collect::<Vec<u32>>() {
+            if self.job.go_on().is_err() {
+                return;
+            }
+            if matches!(self.machine.at(ModuleId::MAIN).states[i as usize], State::Waiting) {
+                self.ensure_all(ModuleId::MAIN, i);
+            }
+        }
     }
 
     /// Evaluates what waits, in all modules; more modules may turn up on the way.

@@ -60,7 +60,7 @@ impl ModelTest<'_> {
         let look = &mut |cx: &mut Cx<'_>| details = details::of(cx);
         // A bug may leave half of something: then the next case starts from nothing.
         let mut kept = self.kept.take();
-        let again = || run::run_again(&task, &disk, self.settings.job, Again { kept: &mut kept, light: false, look });
+        let again = || run::run_again(&task, &disk, self.settings.job, Again { kept: &mut kept, light: false, look, shaped: None });
         let outcome: Outcome = guarded(again).map_err(|bug| {
             let help = "please report it with the script and this text";
             CaseResult::new(&name, Verdict::Bug, format!("a bug in loft: {}", bug.what)).help(help)

@@ -100,6 +100,27 @@ impl Writer {
         self.array(name, "u32", width, values, u32::to_le_bytes);
     }
 
+    /// Rows of places of points: differences in 16 bits where all fit, which are half as long, else the numbers themselves. The first number
+    /// of a row is counted from that of the row before, the others from the first.
+    pub fn corners<const N: usize>(&mut self, name: &str, rows: &[[u32; N]]) {
+        let mut before = 0;
+        let mut steps = Vec::with_capacity(N * rows.len());
+        for row in rows {
+            let from = |k: usize| i64::from(if k == 0 { before } else { row[0] });
+            for (k, place) in row.iter().enumerate() {
+                let Ok(step) = i16::try_from(i64::from(*place) - from(k)) else {
+                    return self.numbers(name, N, rows.as_flattened().iter().copied());
+                };
+                steps.push(step);
+            }
+            before = row[0];
+        }
+        self.array(name, "i16", N, steps.into_iter(), i16::to_le_bytes);
+        if let Some(array) = self.arrays.get_mut(name) {
+            array["coding"] = "steps".into();
+        }
+    }
+
     /// Whole numbers below `count`, a byte each where that is enough.
     pub fn places(&mut self, name: &str, count: usize, values: impl Iterator<Item = u32>) {
         if count <= 256 { self.bytes(name, values.map(|k| k as u8)) } else { self.numbers(name, 1, values) }
@@ -176,6 +197,26 @@ mod tests {
         let offset = array["offset"].as_u64().unwrap() as usize;
         assert_eq!(offset % ALIGNED, 0);
         (header, bytes[offset..offset + n].to_vec())
+    }
+
+    #[test]
+    fn corners_are_steps_where_they_are_short() {
+        let near: Vec<[u32; 3]> = (0..500).map(|k| [k + 30_000, k + 30_001, k]).collect();
+        let far = [[0, 1, 2], [0, 1, 40_000]];
+        let mut writer = Writer::new(Role::Mesh);
+        writer.corners("triangles", &near);
+        writer.corners("far", &far);
+        let buffer = writer.finish();
+        let (header, bytes) = found(&buffer, "triangles");
+        assert_eq!((header["arrays"]["triangles"]["coding"].as_str(), bytes.len()), (Some("steps"), 6 * near.len()));
+        let steps: Vec<i64> = bytes.as_chunks::<2>().0.iter().map(|b| i64::from(i16::from_le_bytes(*b))).collect();
+        let mut first = 0;
+        for (row, step) in near.iter().zip(steps.as_chunks::<3>().0) {
+            first += step[0];
+            assert_eq!(row.map(i64::from), [first, first + step[1], first + step[2]]);
+        }
+        assert_eq!(found(&buffer, "far").1.len(), 24);
+        assert!(header["arrays"]["far"]["coding"].is_null());
     }
 
     #[test]

@@ -58,7 +58,7 @@ pub(super) fn triangles(scene: &Scene, ids: &[(SurfaceId, bool)], fine: f64) -> 
     if bends.len() == points.len() {
         writer.reals("curvature", 2, bends.as_flattened().iter().copied());
     }
-    writer.numbers("triangles", 3, corners.iter().flatten().copied());
+    writer.corners("triangles", &corners);
     writer.places("face", names.len(), of.into_iter());
     writer.say("faces", names.iter().map(|name| json!({"name": name, "area": null, "neighbours": []})).collect::<Vec<_>>());
     (Some(writer.finish()), lost)

@@ -12,8 +12,10 @@ pub const VERSION: u32 = 1;
 pub struct Frame {
     /// [`VERSION`].
     pub loft: u32,
-    /// Counts up with every evaluation.
+    /// Counts up with every frame.
     pub number: u64,
+    /// Only the shapes are evaluated: nothing is known yet of meshes, checks, reports and what else a whole frame tells.
+    pub partial: bool,
     /// The script as named on the command line.
     pub model: String,
     /// What the page is called.

@@ -15,9 +15,14 @@ pub(super) fn buffer(mesh: &Mesh) -> Option<Buffer> {
     }
     let mut writer = Writer::new(Role::Mesh);
     writer.positions(&mesh.nodes[..corners]);
-    writer.numbers("triangles", 3, mesh.triangles.as_flattened().iter().copied());
-    writer.numbers("quads", 4, mesh.quads.as_flattened().iter().copied());
-    writer.numbers("lines", 2, mesh.lines.as_flattened().iter().copied());
+    writer.corners("triangles", &mesh.triangles);
+    writer.corners("quads", &mesh.quads);
+    writer.corners("lines", &mesh.lines);
+    if mesh.sizes.of.len() == corners {
+        writer.places("decided", mesh.sizes.words.len(), mesh.sizes.of.iter().copied());
+        writer.reals("asked", 1, mesh.sizes.lengths.iter().copied());
+        writer.say("deciders", mesh.sizes.words.clone());
+    }
     let mut of = vec![0_u32; mesh.triangles.len() + mesh.quads.len()];
     let (n, mut names) = (mesh.triangles.len() as u32, Vec::new());
     for range in &mesh.faces {

@@ -1,7 +1,7 @@
 //! A model as a page shows it: a frame that lists what the script declares, and buffers of triangles, lines and points.
 //!
 //! `viewer.rs` runs the model and keeps what did not change; `things.rs` lists its declarations; `faces.rs`, `lines.rs` and `meshes.rs`
-//! draw them into buffers (`buffer.rs`); `places.rs` finds the lines of the script; `frame.rs` is what is sent.
+//! draw them into buffers (`buffer.rs`); `partial.rs` shows shapes before the rest is evaluated; `places.rs` finds the lines of the script; `frame.rs` is what is sent.
 
 pub mod buffer;
 mod faces;
@@ -9,6 +9,7 @@ pub mod frame;
 mod lines;
 mod meshes;
 mod params;
+mod partial;
 mod places;
 mod said;
 mod things;

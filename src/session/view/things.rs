@@ -149,10 +149,19 @@ fn joined(items: Vec<Item>) -> Vec<Item> {
     out
 }
 
+/// How much of a model is evaluated when it is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Evaluated {
+    /// Its shapes; meshes are not made.
+    Shapes,
+    /// All of it.
+    Whole,
+}
+
 /// Draws what the script declares; `chord_error` as asked for, model units.
-pub(super) fn draw(cx: &mut Cx, symbols: &[Symbol], chord_error: Option<f64>, kept: &mut Kept) -> Drawn {
+pub(super) fn draw(cx: &mut Cx, symbols: &[Symbol], chord_error: Option<f64>, evaluated: Evaluated, kept: &mut Kept) -> Drawn {
     let Some(tolerance) = cx.tolerance_used() else { return Drawn::default() };
-    let items = items(cx, symbols);
+    let items = items(cx, symbols, evaluated);
     let fine = fineness(chord_error, around(&items).diagonal()).max(tolerance.point);
     let mut drawn = Drawn { chord_error: fine, ..Drawn::default() };
     let scene = scene(cx, &items);
@@ -197,6 +206,14 @@ pub(super) fn draw(cx: &mut Cx, symbols: &[Symbol], chord_error: Option<f64>, ke
         drawn.buffers.extend(buffers.into_iter().map(|buffer| (buffer.key.clone(), buffer)));
         drawn.things.push(thing);
     }
+    if evaluated == Evaluated::Shapes {
+        // What is drawn later may still be as it was.
+        let Kept { faces, meshes } = std::mem::take(kept);
+        for (name, before) in faces {
+            now.faces.entry(name).or_insert(before);
+        }
+        now.meshes = meshes;
+    }
     *kept = now;
     drawn
 }
@@ -217,10 +234,10 @@ fn row(buffer: &Buffer) -> BufferRow {
 }
 
 /// The declarations that can be drawn, in order of writing, `let`s last. A surface that a `let` names again is not drawn twice.
-fn items(cx: &mut Cx, symbols: &[Symbol]) -> Vec<Item> {
+fn items(cx: &mut Cx, symbols: &[Symbol], evaluated: Evaluated) -> Vec<Item> {
     let values = cx.declared_values(symbols);
     let mut items: Vec<Item> = Vec::new();
-    for value in &values {
+    for value in values.iter().filter(|value| evaluated == Evaluated::Whole || value.keyword != Keyword::Mesh) {
         let chain: Vec<Place> = value.lines.iter().filter_map(|(file, span)| place(&cx.program.sources, *file, *span, None)).collect();
         add(cx, value, &value.name, &value.value, &chain, &mut items);
     }

@@ -2,22 +2,25 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use super::buffer::Buffer;
 use super::frame::{Frame, Place, Thing, VERSION};
 use super::params;
+use super::partial::{self, Early};
 use super::places::{place, sources};
 use super::said::{self, Statements};
-use super::things::{self, Drawn, Kept};
+use super::things::{self, Drawn, Evaluated, Kept};
 use crate::base::bbox::Box3;
 use crate::base::job::Job;
 use crate::lang::diag::diagnostic::FileId;
 use crate::lang::eval::context::Cx;
+use crate::lang::run::symbols::Symbol;
 use crate::lang::values::units::number_text;
 use crate::session::collect;
 use crate::session::guard::Bug;
-use crate::session::live::{Clock, Depth, Live};
-use crate::session::report::Report;
+use crate::session::live::{Clock, Live, Looks};
+use crate::session::report::{Corners, Report};
 use crate::session::run::Outcome;
 
 /// Significant digits of measured values.
@@ -51,6 +54,8 @@ pub struct Viewer {
     kept: Kept,
     last: View,
     clock: Clock,
+    /// Seconds that the last run took from its shapes to its end.
+    rest: f64,
 }
 
 /// What a run leaves while its model is there.
@@ -71,12 +76,17 @@ impl Viewer {
     /// A model shown as `name`; its imports are looked for beside `script`.
     pub fn new(name: &str, script: Option<&Path>, allow: &[PathBuf], clock: Clock) -> Self {
         let live = Live::new(name, script, allow, clock.clone());
-        Self { live, kept: Kept::default(), last: View::default(), clock }
+        Self { live, kept: Kept::default(), last: View::default(), clock, rest: 0.0 }
     }
 
     /// The files that the last run read or looked for and did not find, the script itself apart.
     pub fn files(&self) -> &[PathBuf] {
         self.live.files()
+    }
+
+    /// Texts that the next runs read instead of the files of their names.
+    pub fn set_unsaved(&mut self, texts: BTreeMap<PathBuf, Arc<str>>) {
+        self.live.set_unsaved(Arc::new(texts));
     }
 
     /// What was shown last.
@@ -88,11 +98,45 @@ impl Viewer {
     ///
     /// Fails as [`Live::run`].
     pub fn show(&mut self, wanted: &Wanted, job: &Job) -> Result<Option<View>, Bug> {
-        let (mut seen, kept) = (Seen::default(), &mut self.kept);
-        let began = (self.clock)();
+        self.shown(wanted, job, None)
+    }
+
+    /// The same; where the rest is expected to take longer, `early` gets a frame of the shapes before. It has the number before the wanted
+    /// one, and shows with a mark what the frame before had and is not made yet.
+    ///
+    /// Fails as [`Live::run`].
+    pub fn show_early(&mut self, wanted: &Wanted, job: &Job, early: &mut (dyn FnMut(View) + Send)) -> Result<Option<View>, Bug> {
+        self.shown(wanted, job, Some(early))
+    }
+
+    fn shown(&mut self, wanted: &Wanted, job: &Job, early: Option<&mut (dyn FnMut(View) + Send)>) -> Result<Option<View>, Bug> {
+        let (mut seen, kept, clock) = (Seen::default(), Mutex::new(&mut self.kept), self.clock.clone());
+        let draw = |cx: &mut Cx<'_>, symbols: &[Symbol], evaluated: Evaluated| {
+            let mut kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
+            things::draw(cx, symbols, wanted.chord_error, evaluated, &mut kept)
+        };
+        let places = Places::of(&self.live);
+        let mut early = early.filter(|_| partial::is_worth_it(&self.last, self.rest));
+        let (last, began) = (&self.last, clock());
+        let mut shaped_at = began;
+        let mut shaped = |cx: &mut Cx<'_>| {
+            if let Some(early) = &mut early
+                && job.go_on().is_ok()
+            {
+                let symbols = cx.symbols();
+                let drawn = draw(cx, &symbols, Evaluated::Shapes);
+                let sources = sources(&cx.program.sources, &cx.script_files(), &|name| places.path(name));
+                let (model, units) = (places.name.clone(), cx.unit().name.to_owned());
+                // Without a shape there is nothing to look at yet.
+                if !drawn.buffers.is_empty() {
+                    early(partial::view(wanted, Early { model, units, sources, params: params::params(cx), drawn }, last));
+                }
+            }
+            shaped_at = clock();
+        };
         let mut look = |cx: &mut Cx<'_>| {
             let symbols = cx.symbols();
-            let drawn = things::draw(cx, &symbols, wanted.chord_error, kept);
+            let drawn = draw(cx, &symbols, Evaluated::Whole);
             let line = |(file, span)| place(&cx.program.sources, file, span, None);
             let valueless = cx.declared_without_value(&symbols).into_iter().map(|(name, at)| (name, line(at))).collect();
             seen = Seen {
@@ -104,11 +148,14 @@ impl Viewer {
                 read: true,
             };
         };
-        let outcome = self.live.run(&wanted.text, &wanted.sets, Depth::Shown, job, &mut look)?;
+        let looks = Looks { whole: &mut look, shaped: Some(&mut shaped) };
+        let outcome = self.live.run_shown(&wanted.text, &wanted.sets, job, looks)?;
         if outcome.interrupted {
             return Ok(None);
         }
-        let seconds = (self.clock)() - began;
+        let ended = clock();
+        let seconds = ended - began;
+        self.rest = ended - shaped_at;
         let view = self.view(wanted, seen, &outcome, seconds);
         self.last = view.clone();
         Ok(Some(view))
@@ -150,32 +197,27 @@ impl Viewer {
                 things.push(Thing { name: name.clone(), kind, unmade, chain, visible: true, ..Thing::default() });
             }
         }
-        let folder = self.live.script().and_then(Path::parent).map(Path::to_owned).unwrap_or_default();
-        let path = |name: &str| {
-            let place =
-                if name == self.live.name() { self.live.script().map(Path::to_owned).unwrap_or_default() } else { folder.join(name) };
-            if place.is_file() { std::path::absolute(&place).unwrap_or(place).to_string_lossy().into_owned() } else { String::new() }
-        };
+        let places = Places::of(&self.live);
         let (mut checks, reports) = seen.statements.with(&outcome.report);
         let names = ThingNames::new(&things);
         things.iter_mut().for_each(|thing| thing.of = names.all(&thing.of));
         checks.iter_mut().for_each(|check| check.things = names.all(&check.things));
-        let drawn_box = buffers.values().map(|buffer| buffer.around).fold(Box3::EMPTY, Box3::union);
         let frame = Frame {
             loft: VERSION,
             number: wanted.number,
-            model: self.live.name().to_owned(),
-            title: self.live.name().to_owned(),
+            partial: false,
+            model: places.name.clone(),
+            title: places.name.clone(),
             units: outcome.report.units.clone(),
             ok: outcome.report.ok,
             stale,
             drawn: wanted.number,
             seconds,
-            corners: collect::corners(drawn_box),
+            corners: corners_of(&buffers),
             chord_error,
             diagnostics: said::diagnostics(&outcome.diagnostics, &outcome.sources, &things),
             things,
-            sources: sources(&outcome.sources, &seen.files, &path),
+            sources: sources(&outcome.sources, &seen.files, &|name| places.path(name)),
             params: seen.params,
             checks,
             reports,
@@ -184,6 +226,29 @@ impl Viewer {
             compare: None,
         };
         View { frame, buffers }
+    }
+}
+
+/// The box of what is drawn, model units.
+pub(super) fn corners_of(buffers: &BTreeMap<String, Buffer>) -> Option<Corners> {
+    collect::corners(buffers.values().map(|buffer| buffer.around).fold(Box3::EMPTY, Box3::union))
+}
+
+/// Where the files of a model stand.
+struct Places {
+    name: String,
+    script: PathBuf,
+}
+
+impl Places {
+    fn of(live: &Live) -> Self {
+        Self { name: live.name().to_owned(), script: live.script().map(Path::to_owned).unwrap_or_default() }
+    }
+
+    /// The full path of a file of this name; empty where there is none.
+    fn path(&self, name: &str) -> String {
+        let place = if name == self.name { self.script.clone() } else { self.script.parent().unwrap_or(Path::new("")).join(name) };
+        if place.is_file() { std::path::absolute(&place).unwrap_or(place).to_string_lossy().into_owned() } else { String::new() }
     }
 }
 

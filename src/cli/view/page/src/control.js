@@ -33,12 +33,12 @@ export function createControl(app, byId) {
       model.measuring = app.selection.measuring;
       if (app.selection.measuring) {
         state.set({ tab: 'selected' });
-        tell('Pick two places: faces, edges or nodes.', 4);
+        tell('Pick two places: faces, edges, sides or nodes.', 4);
       }
       app.selection.changed();
     },
     isolate: () => (app.selection.thing || state.get().only ? isolate(app.selection.thing) : null),
-    hide: () => app.selection.thing && toggle(model.thing(app.selection.thing), false),
+    hide: () => model.thing(app.selection.thing) && toggle(model.thing(app.selection.thing), false),
     clear() {
       if (byId('help').open) byId('help').close();
       app.selection.clear();
@@ -110,6 +110,7 @@ export function createControl(app, byId) {
     clearTimeout(refineTimer);
     refineTimer = setTimeout(() => {
       const { frame } = model;
+      if (frame?.partial) return refineSoon(); // When the evaluation has ended.
       if (!app.server.live || !frame?.chord_error || !frame.box) return;
       const pixel = stage.view.height / stage.size.height;
       if (frame.chord_error > 1.5 * pixel) app.refine('refine', Math.max(pixel / 2, stage.sphere().radius * 1e-6));

@@ -1,6 +1,8 @@
 // What is told about a pick: name, kind, size, coordinates, neighbours; and what lies between two picks.
 
+import { askedFacts } from './deciders.js';
 import { coordinate, shortNumber } from './dom.js';
+import { cornersOf } from './elements.js';
 
 /** `{ title, kind, facts: [[name, value]], neighbours: [{ name, item }] }` of a pick. */
 export function describe(hit, units, radius) {
@@ -25,19 +27,28 @@ export function describe(hit, units, radius) {
   } else if (kind === 'point') {
     title = header.names?.[item] ?? `${drawing.name}[${item}]`;
   } else {
-    const elements = cornersOf(arrays, item);
-    const number = item + (header.first_element ?? 1);
+    const numberOf = (n) => n + (header.first_element ?? 1);
+    const number = numberOf(item);
     const idOf = (n) => arrays.ids?.[n] ?? n + 1;
+    const length = (value) => `${shortNumber(value)} ${units}`;
     if (kind === 'node') {
       title = `${drawing.name}, node ${idOf(hit.node)}`;
-      if (arrays.decided) facts.push(['size decided by', header.deciders?.[arrays.decided[hit.node]] ?? '–']);
-      if (arrays.asked) facts.push(['asked edge length', `${shortNumber(arrays.asked[hit.node])} ${units}`]);
+      facts.push(...askedFacts(drawing.buffer, [hit.node], length));
       facts.push(['in element', String(number)]);
+    } else if (kind === 'side') {
+      title = `${drawing.name}, side ${hit.nodes.map(idOf).join('–')}`;
+      facts.push(['nodes', hit.nodes.map(idOf).join(', ')]);
+      facts.push(['length', length(lengthOf(arrays.positions, hit.nodes))]);
+      facts.push(...askedFacts(drawing.buffer, hit.nodes, length));
+      const beside = hit.elements.map(numberOf).join(', ');
+      facts.push(hit.elements.length === 1 ? ['free side of element', beside] : ['between elements', beside]);
     } else {
+      const corners = cornersOf(arrays, item);
       title = `${drawing.name}, element ${number}`;
-      facts.push(['shape', elements.length === 3 ? 'triangle' : 'quadrangle']);
-      facts.push(['nodes', elements.map(idOf).join(', ')]);
-      facts.push(['area', `${shortNumber(areaOf(arrays.positions, elements))} ${units}²`]);
+      facts.push(['shape', corners.length === 3 ? 'triangle' : 'quadrangle']);
+      facts.push(['nodes', corners.map(idOf).join(', ')]);
+      facts.push(['area', `${shortNumber(areaOf(arrays.positions, corners))} ${units}²`]);
+      facts.push(...askedFacts(drawing.buffer, corners, length));
       const groups = (header.groups ?? []).filter((g) => inRanges(g.elements, number)).map((g) => g.name);
       if (groups.length) facts.push(['groups', groups.join(', ')]);
       const face = header.faces?.[arrays.face?.[item]];
@@ -50,10 +61,7 @@ export function describe(hit, units, radius) {
 
 export const inRanges = (ranges, number) => (ranges ?? []).some(([from, to]) => number >= from && number <= to);
 
-export function cornersOf({ triangles, quads }, item) {
-  const nt = (triangles?.length ?? 0) / 3;
-  return item < nt ? [...triangles.subarray(3 * item, 3 * item + 3)] : [...quads.subarray(4 * (item - nt), 4 * (item - nt) + 4)];
-}
+const lengthOf = (p, [a, b]) => Math.hypot(...[0, 1, 2].map((i) => p[3 * b + i] - p[3 * a + i]));
 
 function areaOf(p, corners) {
   let area = 0;

@@ -15,9 +15,7 @@ export function createLegend(holder, onBrush) {
         element(
           'ul',
           { class: 'swatches' },
-          legend.entries.map(({ name, color }) =>
-            element('li', {}, element('span', { class: 'swatch', style: `background:${color}` }), name),
-          ),
+          legend.entries.map((entry) => element('li', {}, entry.share === undefined ? swatch(entry) : choice(entry))),
         ),
       );
     }
@@ -36,8 +34,24 @@ export function createLegend(holder, onBrush) {
     }
     if (legend.histogram) parts.push(...histogram(legend.histogram));
     if (legend.note) parts.push(element('p', { text: legend.note }));
+    const focused = document.activeElement?.dataset?.entry;
     holder.replaceChildren(...parts);
+    if (focused !== undefined) holder.querySelector(`[data-entry="${CSS.escape(focused)}"]`)?.focus();
     holder.hidden = parts.length === 0;
+  }
+
+  const swatch = ({ name, color }) => [element('span', { class: 'swatch', style: `background:${color}` }), name];
+
+  /** An entry with its share of the elements; a click shows these alone. */
+  function choice({ chosen, count, share, ...entry }) {
+    const attributes = { type: 'button', 'aria-pressed': String(chosen), title: `${count} elements`, dataset: { entry: entry.name } };
+    const onclick = () => onBrush(chosen ? null : entry.name);
+    return element(
+      'button',
+      { ...attributes, onclick },
+      swatch(entry),
+      element('span', { class: 'share', text: `${shortNumber(100 * share, 3)} %` }),
+    );
   }
 
   function histogram(about) {

@@ -12,6 +12,7 @@ export class Model {
     this.state = state;
     this.buffers = new Buffers();
     this.frame = null;
+    this.whole = null; // The last frame whose evaluation had ended.
     this.drawings = [];
     this.compared = []; // Drawings of the other state of the model.
     this.newest = 0;
@@ -29,17 +30,18 @@ export class Model {
    */
   async show(frame, server) {
     const turn = ++this.newest;
-    const things = [...frame.things, ...(frame.compare?.things ?? [])];
-    const keys = things.flatMap((thing) => (thing.buffers ?? []).map((buffer) => buffer.key));
+    const keys = keysOf(frame);
     await this.buffers.load(keys, (key) => server.buffer(key));
     if (turn !== this.newest) return false;
     const first = !this.frame || !this.stage.box;
     this.frame = frame;
-    if (this.stage.setBox(frame.box)) this.moved = true;
+    if (!frame.partial) this.whole = frame;
+    if (this.stage.setBox(frame.partial ? grown(this.stage.box, frame.box) : frame.box)) this.moved = true;
     this.drawings = this.renew(this.drawings, frame.things);
     this.compared = this.renew(this.compared, frame.compare?.things ?? []);
     for (const drawing of this.compared) drawing.ghost = true;
-    this.buffers.keep(keys);
+    // What a partial frame leaves out may come again with the whole one.
+    this.buffers.keep(frame.partial && this.whole ? [...keys, ...keysOf(this.whole)] : keys);
     if (first && frame.box && !this.state.get().view) this.stage.fit();
     return true;
   }
@@ -105,7 +107,7 @@ export class Model {
     const { things } = this.frame;
     const parts = this.thing(name)?.of ?? [];
     return things.some((mesh) => {
-      if (mesh.kind !== 'mesh' || mesh.unmade) return false;
+      if (mesh.kind !== 'mesh' || mesh.unmade || isAwaited(mesh)) return false;
       const of = mesh.of ?? [];
       if (of.some((one) => one === name || this.thing(one)?.of?.includes(name))) return true;
       return parts.length > 0 && parts.every((part) => of.includes(part));
@@ -139,4 +141,17 @@ export class Model {
       )
       .map((thing) => thing.name);
   }
+}
+
+/** Whether a thing is still to be made and was not there before. */
+export const isAwaited = (thing) => Boolean(thing.pending) && !(thing.buffers?.length > 0);
+
+const keysOf = ({ things, compare }) =>
+  [...things, ...(compare?.things ?? [])].flatMap((thing) => (thing.buffers ?? []).map((buffer) => buffer.key));
+
+/** While an evaluation runs the box only grows, so that depth and section do not jump. */
+function grown(old, box) {
+  if (!old || !box) return box ?? old;
+  const apart = [0, 1, 2].some((i) => box[0][i] > old[1][i] || box[1][i] < old[0][i]);
+  return apart ? box : [box[0].map((low, i) => Math.min(low, old[0][i])), box[1].map((high, i) => Math.max(high, old[1][i]))];
 }

@@ -6,6 +6,7 @@ import { createLegend } from './legend.js';
 import { axes, Marks } from './marks.js';
 import { Model } from './model.js';
 import { createPanes } from './panes.js';
+import { completed } from './partial.js';
 import { Section } from './section.js';
 import { Selection } from './selection.js';
 import { connect, throttled } from './server.js';
@@ -129,21 +130,23 @@ export function startPage() {
     (x, y) => app.selection.at(x, y)?.point ?? null,
   );
 
-  async function takeFrame(frame, times) {
+  async function takeFrame(given, times) {
+    const frame = completed(given, model.whole);
     try {
       if (!(await model.show(frame, app.server))) return;
     } catch (error) {
       // A buffer of a frame that is no longer the newest may be gone; the next frame brings its own.
-      app.control.tell(`Frame ${frame.number} could not be shown: ${error.message}`);
+      if (!frame.partial) app.control.tell(`Frame ${frame.number} could not be shown: ${error.message}`);
       return;
     }
     app.control.settle();
     app.selection.renew();
-    document.title = `${frame.ok ? '' : '● '}${frame.title}`;
+    document.title = `${frame.partial ? '… ' : frame.ok ? '' : '● '}${frame.title}`;
     app.recolor();
     app.panes.setFrame(frame);
     // Lines may have moved: the chain of what is chosen is that of the new text.
-    if (app.selection.thing) app.panes.script.setChain(model.thing(app.selection.thing)?.chain ?? [], false);
+    const chosen = model.thing(app.selection.thing);
+    if (chosen || (app.selection.thing && !frame.partial)) app.panes.script.setChain(chosen?.chain ?? [], false);
     app.marks.setDiagnostics(frame.diagnostics, frame.units);
     stage.invalidate();
     model.times = { ...times, loaded: performance.now(), number: frame.number };

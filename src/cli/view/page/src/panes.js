@@ -15,6 +15,7 @@ const TABS = [
   ['reports', 'Reports'],
   ['selected', 'Selected'],
 ];
+const RESULTS = ['problems', 'checks', 'reports']; // Panes of what is known when an evaluation has ended.
 
 export function createPanes(app, byId) {
   const { state, model, selection, control } = app;
@@ -164,9 +165,14 @@ export function createPanes(app, byId) {
     setFrame(frame) {
       script.setFrame(frame);
       params.setFrame(frame);
-      drawProblems(panes.problems, frame, { diagnostic: control.openDiagnostic, goTo: control.goTo });
-      drawChecks(panes.checks, frame, { check: control.openCheck });
-      drawReports(panes.reports, frame, { goTo: control.goTo });
+      for (const name of RESULTS) panes[name].setAttribute('aria-busy', String(Boolean(frame.partial)));
+      if (frame.evaluating) {
+        for (const name of RESULTS) panes[name].replaceChildren(element('p', { class: 'empty', text: 'Evaluating…' }));
+      } else {
+        drawProblems(panes.problems, frame, { diagnostic: control.openDiagnostic, goTo: control.goTo });
+        drawChecks(panes.checks, frame, { check: control.openCheck });
+        drawReports(panes.reports, frame, { goTo: control.goTo });
+      }
       drawPicked();
       const errors = frame.diagnostics.filter((d) => d.severity === 'error').length;
       const failed = frame.checks.filter((check) => !check.pass).length;
@@ -176,10 +182,14 @@ export function createPanes(app, byId) {
         errors ? 'error' : frame.diagnostics.some((d) => d.severity === 'warning') ? 'warning' : '',
       );
       badge('checks', failed || '', 'error');
-      byId('stale').hidden = !frame.stale;
-      byId('stale').textContent = errors
-        ? `The script has ${errors === 1 ? 'an error' : `${errors} errors`}; what is grey is drawn as it was before.`
-        : 'What is grey is drawn as it was before.';
+      const grey = frame.partial ? frame.things.some((thing) => thing.stale && model.isShown(thing)) : frame.stale;
+      byId('stale').hidden = !grey;
+      byId('stale').classList.toggle('running', Boolean(frame.partial));
+      byId('stale').textContent = frame.partial
+        ? 'The script is being evaluated; what is grey is drawn as it was before.'
+        : errors
+          ? `The script has ${errors === 1 ? 'an error' : `${errors} errors`}; what is grey is drawn as it was before.`
+          : 'What is grey is drawn as it was before.';
     },
     scrollToReport(name) {
       panes.reports.querySelector(`[data-report="${CSS.escape(name)}"]`)?.scrollIntoView({ block: 'start' });

@@ -2,9 +2,11 @@
 
 import { DoubleSide, Ray } from 'three';
 import { rayThrough } from './camera.js';
+import { cornersOf, elementsBeside, sidesOf } from './elements.js';
 
 const EDGE_PIXELS = 6;
 const NODE_PIXELS = 7;
+const SIDE_PIXELS = 5;
 const CHUNK = 32;
 const ray = new Ray();
 
@@ -25,7 +27,8 @@ export function pick(stage, drawings, x, y, section) {
   const point = nearestPoint(stage, drawings, x, y, best, section);
   if (point) return point;
   if (line) return line;
-  return best?.drawing.role === 'mesh' ? (nearNode(stage, best, x, y) ?? best) : best;
+  if (best?.drawing.role !== 'mesh') return best;
+  return nearNode(stage, best, x, y) ?? nearSide(stage, best, start, along, span) ?? best;
 }
 
 /** The part of a ray that the section plane leaves, as distances from its start. */
@@ -177,11 +180,30 @@ function distanceFromEye(stage, point) {
 /** The corner of a picked element, where the cursor is on it. */
 function nearNode(stage, hit, x, y) {
   const { buffer } = hit.drawing;
-  for (let k = 0; k < 3; k++) {
-    const node = buffer.index[3 * hit.triangle + k];
+  for (const node of cornersOf(buffer.arrays, hit.item)) {
     const point = buffer.origin.map((o, i) => o + buffer.arrays.positions[3 * node + i]);
     const at = stage.toScreen(point);
     if (at && Math.hypot(at[0] - x, at[1] - y) <= NODE_PIXELS) return { ...hit, kind: 'node', node, point };
   }
   return null;
+}
+
+/** The side of a picked element, where the cursor is on it. */
+function nearSide(stage, hit, start, along, span) {
+  const { buffer } = hit.drawing;
+  const { positions } = buffer.arrays;
+  const from = start.map((s, i) => s - buffer.origin[i]);
+  let best = null;
+  for (const side of sidesOf(buffer.arrays, hit.item)) {
+    const nodes = side.sort((a, b) => a - b); // The same from both elements.
+    const ends = nodes.flatMap((node) => [...positions.subarray(3 * node, 3 * node + 3)]);
+    const near = nearestToRay(ends, 0, from, along);
+    if (near.t < span[0] || near.t > span[1]) continue;
+    const point = near.at.map((p, i) => p + buffer.origin[i]);
+    const pixels = near.off / stage.pixelAt(point);
+    if (pixels > SIDE_PIXELS || (best && best.pixels <= pixels)) continue;
+    best = { nodes, point, pixels, direction: near.direction, distance: near.t };
+  }
+  // A side has a direction as an edge has, and no normal.
+  return best && { ...hit, ...best, kind: 'side', normal: null, elements: elementsBeside(buffer, best.nodes) };
 }

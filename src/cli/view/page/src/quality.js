@@ -77,9 +77,13 @@ function lengthAgainstAsked(p, ids, at, corners, asked) {
   let length = 0;
   let wanted = 0;
   for (let k = 0; k < corners; k++) {
+    const [here, next] = [asked[ids[at + k]], asked[ids[at + ((k + 1) % corners)]]];
+    // Where one end of a side asks nothing, the other end says it; where neither does, the side does not count.
+    const own = Number.isNaN(here) ? next : Number.isNaN(next) ? here : (here + next) / 2;
+    if (Number.isNaN(own)) continue;
     sidesAt(p, ids, at, corners, k, sides);
     length += Math.hypot(sides[0], sides[1], sides[2]);
-    wanted += asked[ids[at + k]];
+    wanted += own;
   }
   return wanted > 0 ? length / wanted : NaN;
 }

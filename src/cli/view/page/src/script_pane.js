@@ -26,7 +26,7 @@ export function createScriptPane(holder, on) {
       frame &&
       frame.sources.length === next.sources.length &&
       frame.sources.every((source, i) => source.text === next.sources[i].text && source.file === next.sources[i].file) &&
-      JSON.stringify(frame.diagnostics) === JSON.stringify(next.diagnostics);
+      ['diagnostics', 'checks'].every((name) => JSON.stringify(frame[name]) === JSON.stringify(next[name]));
     frame = next;
     if (same) return;
     shown = Math.min(shown, Math.max(frame.sources.length - 1, 0));
@@ -118,7 +118,7 @@ export function createScriptPane(holder, on) {
   }
 
   function goTo(place, tell) {
-    if (!place || !frame) return;
+    if (!frame?.sources[place?.file]) return;
     if (place.file !== shown) {
       shown = place.file;
       drawLines();

@@ -2,6 +2,7 @@
 
 import { element } from './dom.js';
 import { between, describe } from './described.js';
+import { isAwaited } from './model.js';
 
 const list = (facts) =>
   element(
@@ -62,6 +63,7 @@ export function drawSelected(holder, { picks, thing, units, radius, measuring },
         { class: 'picked' },
         element('h2', {}, element('span', { class: 'kind', text: thing.kind }), element('span', { text: thing.name })),
         thing.unmade && element('p', { class: 'unmade', text: `Not made: ${thing.unmade}` }),
+        isAwaited(thing) && element('p', { class: 'hint', text: 'Not made yet.' }),
         thing.stale && element('p', { class: 'unmade', text: 'Drawn as it was before the last change.' }),
         thing.facts?.length > 0 && list(thing.facts),
         thing.of?.length > 0 &&

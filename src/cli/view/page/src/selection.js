@@ -2,7 +2,9 @@
 
 import { describe } from './described.js';
 import { coordinate } from './dom.js';
+import { isAwaited } from './model.js';
 import { pick } from './picking.js';
+import { SideMarks } from './side_marks.js';
 
 export class Selection {
   constructor(app) {
@@ -12,6 +14,7 @@ export class Selection {
     this.thing = null; // The name of the thing that is chosen, by a pick or in the tree.
     this.lit = new Set();
     this.measuring = false;
+    this.sides = new SideMarks(app.stage);
   }
 
   at(x, y) {
@@ -27,7 +30,7 @@ export class Selection {
     const told = hit && describe(hit, this.app.model.frame.units, this.app.stage.sphere().radius);
     this.app.status.under(told?.title, hit?.point, this.app.stage.sphere().radius);
     this.app.stage.canvas.classList.toggle('over', Boolean(hit));
-    if (before?.drawing !== hit?.drawing || before?.item !== hit?.item) this.mark();
+    if (!isSame(before, hit)) this.mark();
   }
 
   /** A click picks; with Shift, or while measuring, a second pick is kept beside the first. */
@@ -81,14 +84,27 @@ export class Selection {
     this.changed();
   }
 
-  /** After a new frame: picks stay where their buffer is still there, the chosen thing by its name. */
+  /**
+   * After a new frame: picks stay where their buffer is still there, the chosen thing by its name. What a partial frame
+   * leaves out is waited for.
+   */
   renew() {
     const { model } = this.app;
-    const there = (hit) => hit && model.drawings.includes(hit.drawing);
-    if (!there(this.hovered)) this.hovered = null;
-    this.picks = this.picks.filter(there);
+    const { partial } = model.frame;
+    if (!this.isDrawn(this.hovered)) this.hovered = null;
+    this.picks = this.picks.filter((hit) => {
+      const drawing = model.drawings.find((one) => one.id === hit.drawing.id);
+      if (drawing) hit.drawing = drawing;
+      const thing = model.thing(hit.drawing.name);
+      return drawing || (partial && (!thing || isAwaited(thing)));
+    });
+    if (partial) return;
     if (this.thing && !model.thing(this.thing)) this.thing = null;
     this.lit = new Set([...this.lit].filter((name) => model.thing(name)));
+  }
+
+  isDrawn(hit) {
+    return Boolean(hit) && this.app.model.drawings.includes(hit.drawing) && hit.drawing.object.visible;
   }
 
   changed() {
@@ -113,12 +129,13 @@ export class Selection {
     const { model, stage, marks } = this.app;
     const lit = this.litNames();
     for (const drawing of model.drawings) {
-      const mine = (hit) => hit && hit.drawing === drawing && (drawing.isLine || hit.kind !== 'edge');
+      const mine = (hit) => hit && hit.drawing === drawing && hit.kind !== 'side';
       drawing.mark('hovered', mine(this.hovered) ? this.hovered.item : null);
       const chosen = [...this.picks].reverse().find(mine);
       drawing.mark('chosen', chosen ? chosen.item : null);
       drawing.set({ glow: lit.has(drawing.name) ? (drawing.isSolid ? 0.45 : 0.85) : 0 });
     }
+    this.sides.show([this.hovered, ...this.picks].map((hit) => (hit?.kind === 'side' && this.isDrawn(hit) ? hit : null)));
     const [a, b] = this.picks;
     const step = a && b && Math.hypot(...a.point.map((p, i) => b.point[i] - p));
     marks?.setMeasure(
@@ -129,3 +146,6 @@ export class Selection {
     stage.invalidate();
   }
 }
+
+const isSame = (one, other) =>
+  ['drawing', 'kind', 'item', 'node'].every((name) => one?.[name] === other?.[name]) && `${one?.nodes}` === `${other?.nodes}`;

@@ -1,6 +1,7 @@
 // What each shade writes into the drawings and into the legend, by the first word of its name.
 
 import { BufferAttribute } from 'three';
+import { decidersOf, NOT_KNOWN } from './deciders.js';
 import { inRanges } from './described.js';
 import { MEASURES } from './quality.js';
 import { ask } from './tasks.js';
@@ -21,6 +22,8 @@ function paint(drawing, count, color) {
   });
   drawing.set({ mode: 1 });
 }
+
+const UNKNOWN = [0.6, 0.6, 0.6]; // Elements of which a shade can say nothing.
 
 const elementCount = ({ arrays }) => (arrays.triangles?.length ?? 0) / 3 + (arrays.quads?.length ?? 0) / 4;
 
@@ -79,37 +82,53 @@ export const RULES = {
     if (!current()) return;
     const share = (value) =>
       about.bad === 'both' ? 1 - Math.abs(value - 1) : (value - about.from) / (measure === 'angle' ? 60 : about.to);
-    const { brush } = this;
+    const brush = Array.isArray(this.brush) ? this.brush : null;
     const inside = (value) => !brush || (value >= brush[0] && value <= brush[1]);
     meshes.forEach((drawing, m) => {
       const values = found[m];
       paint(drawing, values.length, (i) =>
-        Number.isNaN(values[i]) ? (brush ? null : [0.6, 0.6, 0.6]) : inside(values[i]) ? goodness(share(values[i])) : null,
+        Number.isNaN(values[i]) ? (brush ? null : UNKNOWN) : inside(values[i]) ? goodness(share(values[i])) : null,
       );
       if (brush) drawing.filter = (i) => inside(values[i]);
     });
     legend.histogram = { ...about, measure, values: found, brush, color: (value) => goodness(share(value)) };
-    if (found.every((values) => values.every(Number.isNaN))) legend.note = 'The mesh does not tell what edge length was asked.';
+    const elements = found.reduce((sum, values) => sum + values.length, 0);
+    const unknown = found.reduce((sum, values) => sum + values.reduce((n, value) => n + Number.isNaN(value), 0), 0);
+    if (unknown === elements) legend.note = 'The mesh does not tell what edge length was asked.';
+    else if (unknown > 0) legend.note = `${unknown} more are grey: what was asked there is not known.`;
   },
 
   decided(legend) {
-    const names = [];
-    for (const drawing of this.solids('mesh')) {
-      const { header, arrays } = drawing.buffer;
-      if (!arrays.decided) continue;
-      const numbers = (header.deciders ?? []).map((name) => (names.includes(name) ? names.indexOf(name) : names.push(name) - 1));
-      const nt = (arrays.triangles?.length ?? 0) / 3;
-      paint(drawing, elementCount(drawing.buffer), (i) => {
-        const [ids, at, n] = i < nt ? [arrays.triangles, 3 * i, 3] : [arrays.quads, 4 * (i - nt), 4];
-        // The setting that decided at most of the corners.
-        let best = arrays.decided[ids[at]];
-        for (let k = 1; k < n - 1; k++)
-          if (arrays.decided[ids[at + k]] === arrays.decided[ids[at + k + 1]]) best = arrays.decided[ids[at + k]];
-        return rgb(paletteColor(numbers[best] ?? 15));
-      });
+    const meshes = this.solids('mesh').filter((drawing) => drawing.object.visible && drawing.buffer.arrays.decided);
+    if (!meshes.length) {
+      legend.note = 'No mesh that is shown tells what decided its sizes.';
+      return;
     }
-    legend.entries = names.map((name, i) => ({ name, color: paletteColor(i) }));
-    if (!names.length) legend.note = 'No mesh tells what decided its sizes.';
+    const entries = new Map(); // By name: meshes may have the same deciders.
+    const entryOf = (name) => {
+      const color = name === NOT_KNOWN ? '#999999' : paletteColor([...entries.keys()].filter((one) => one !== NOT_KNOWN).length);
+      if (!entries.has(name)) entries.set(name, { name, color, rgb: rgb(color), count: 0 });
+      return entries.get(name);
+    };
+    const found = meshes.map((drawing) => {
+      const own = (drawing.buffer.header.deciders ?? []).map(entryOf);
+      const unknown = entryOf(NOT_KNOWN);
+      const numbers = decidersOf(drawing.buffer);
+      for (const n of numbers) (own[n] ?? unknown).count++;
+      return { drawing, numbers, of: (i) => own[numbers[i]] ?? unknown };
+    });
+    const chosen = entries.get(this.brush)?.count ? entries.get(this.brush) : null;
+    for (const { drawing, numbers, of } of found) {
+      const inside = (i) => !chosen || of(i) === chosen;
+      paint(drawing, numbers.length, (i) => (inside(i) ? of(i).rgb : null));
+      if (chosen) drawing.filter = inside;
+    }
+    const total = found.reduce((sum, { numbers }) => sum + numbers.length, 0);
+    legend.entries = [...entries.values()]
+      .filter(({ count }) => count > 0)
+      .sort((a, b) => (a.name === NOT_KNOWN) - (b.name === NOT_KNOWN) || b.count - a.count)
+      .map((entry) => ({ ...entry, share: entry.count / total, chosen: entry === chosen }));
+    legend.note = chosen ? `${chosen.count} of ${total} elements` : `${total} elements`;
   },
 
   gauss(legend) {

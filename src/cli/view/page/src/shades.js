@@ -91,7 +91,7 @@ export class Shades {
     return made;
   }
 
-  /** Sets which values of the measure are drawn, `[from, to]` or null. */
+  /** Sets what alone is drawn: values of the measure `[from, to]`, the name of an entry of the legend, or null for all. */
   setBrush(range) {
     this.brush = range;
   }

@@ -31,6 +31,9 @@ export function createStatus(holder, work, onStop) {
     },
     frame(frame, times) {
       units.textContent = frame.units;
+      time.title = '';
+      time.textContent = 'evaluating';
+      if (frame.partial) return;
       time.textContent = `made in ${shortNumber(frame.seconds * 1000, 3)} ms · shown in ${Math.round(times.shown - times.heard)} ms`;
       time.title = 'Evaluation of the script; from the news of the frame to its picture';
     },

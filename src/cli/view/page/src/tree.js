@@ -1,6 +1,7 @@
 // The tree of declarations: things by kind, then checks, reports and pictures; with search, visibility, colour, isolation.
 
 import { button, element, icon } from './dom.js';
+import { isAwaited } from './model.js';
 import { theme } from './theme.js';
 
 const SECTIONS = [
@@ -46,8 +47,8 @@ export function createTree(holder, search, model, state, on) {
       ),
     );
     const shown = sections.filter(Boolean);
-    if (!shown.length)
-      shown.push(element('p', { class: 'empty', text: wanted ? 'Nothing has this name.' : 'The script declares nothing yet.' }));
+    const none = wanted ? 'Nothing has this name.' : frame.partial ? 'Evaluating…' : 'The script declares nothing yet.';
+    if (!shown.length) shown.push(element('p', { class: 'empty', text: none }));
     const top = holder.scrollTop;
     holder.replaceChildren(...shown);
     holder.scrollTop = top;
@@ -71,7 +72,8 @@ export function createTree(holder, search, model, state, on) {
       element('span', { class: 'name', text: title }),
       element('span', { class: 'count', text: String(items.length) }),
     );
-    if (key !== 'checks' && key !== 'reports' && key !== 'pictures') {
+    const isResult = key === 'checks' || key === 'reports' || key === 'pictures';
+    if (!isResult) {
       const things = model.frame.things.filter((thing) => thing.kind === key);
       const some = things.some((thing) => model.isShown(thing));
       head.append(
@@ -86,7 +88,8 @@ export function createTree(holder, search, model, state, on) {
         ),
       );
     }
-    return element('div', { role: 'group', 'aria-label': title, class: 'branch' }, head, open && items);
+    const busy = isResult && model.frame.partial ? 'true' : null;
+    return element('div', { role: 'group', 'aria-label': title, 'aria-busy': busy, class: 'branch' }, head, open && items);
   }
 
   /** A row that the arrow keys reach. */
@@ -135,7 +138,8 @@ export function createTree(holder, search, model, state, on) {
       colors[thing.name] ??
       thing.color ??
       (thing.kind === 'curve' ? theme.curve : thing.kind === 'point' ? theme.point : thing.kind === 'mesh' ? theme.mesh : theme.surface);
-    const labels = [thing.unmade && 'not made', thing.stale && 'as it was before', !shown && 'hidden'].filter(Boolean);
+    const awaited = isAwaited(thing);
+    const labels = [thing.unmade && 'not made', awaited && 'not made yet', thing.stale && 'as it was before', !shown && 'hidden'].filter(Boolean);
     const item = row(
       thing.name,
       {
@@ -144,12 +148,13 @@ export function createTree(holder, search, model, state, on) {
           shown ? '' : 'off',
           thing.stale ? 'stale' : '',
           thing.unmade ? 'unmade' : '',
+          awaited ? 'awaited' : '',
           on.isChosen(thing.name) ? 'chosen' : '',
           on.isLit(thing.name) ? 'lit' : '',
         ].join(' '),
         'aria-label': `${thing.kind} ${thing.name}${labels.length ? `, ${labels.join(', ')}` : ''}`,
         'aria-selected': String(on.isChosen(thing.name)),
-        title: thing.unmade ? `${thing.name}: ${thing.unmade}` : thing.name,
+        title: thing.unmade ? `${thing.name}: ${thing.unmade}` : awaited ? `${thing.name}: not made yet` : thing.name,
         onclick: () => on.choose(thing),
         ondblclick: () => on.zoom([thing.name]),
         onpointerenter: () => on.hover(thing.name),
@@ -171,6 +176,7 @@ export function createTree(holder, search, model, state, on) {
           }),
       element('span', { class: 'name', text: thing.name }),
       thing.unmade && element('span', { class: 'tag', text: 'not made' }),
+      awaited && element('span', { class: 'tag', text: 'not yet' }),
       thing.stale && element('span', { class: 'tag', text: 'stale' }),
       button(
         alone ? 'Show all again' : `Show ${thing.name} alone`,

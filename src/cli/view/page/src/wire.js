@@ -19,14 +19,31 @@ export function readBuffer(bytes) {
   if (8 + length > bytes.byteLength) throw new Error('a header longer than its buffer');
   const header = JSON.parse(new TextDecoder().decode(new Uint8Array(bytes, 8, length)));
   const arrays = {};
-  for (const [name, { type, width, count, offset }] of Object.entries(header.arrays ?? {})) {
+  for (const [name, { type, width, count, offset, coding }] of Object.entries(header.arrays ?? {})) {
     const Kind = KINDS[type];
     if (!Kind) throw new Error(`an array of type ${type}`);
+    if (coding && coding !== 'steps') throw new Error(`an array in the coding ${coding}`);
     if (offset + width * count * Kind.BYTES_PER_ELEMENT > bytes.byteLength) throw new Error(`the array ${name} ends after its buffer`);
-    arrays[name] = new Kind(bytes, offset, width * count);
+    const values = new Kind(bytes, offset, width * count);
+    arrays[name] = coding ? fromSteps(values, width) : values;
   }
   checkIndices(arrays);
   return { header, arrays };
+}
+
+/**
+ * Plain indices from steps: in each row of a table the first number is the difference from the first index of the row
+ * before, the others are differences from the first index of their own row.
+ */
+function fromSteps(steps, width) {
+  const indices = new Uint32Array(steps.length);
+  let first = 0;
+  for (let i = 0; i < steps.length; i += width) {
+    first += steps[i];
+    indices[i] = first;
+    for (let k = 1; k < width; k++) indices[i + k] = first + steps[i + k];
+  }
+  return indices;
 }
 
 /** Indices must be of points that are there, or the graphics driver reads elsewhere. */
