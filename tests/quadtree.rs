@@ -115,7 +115,7 @@ mod plate {
     use lofting::mesh::chart::outline::Outline;
     use lofting::mesh::chart::parametric_surface::{ParametricSurface, Spot, UniformSize};
     use lofting::mesh::tri::build::{NodePlacement, Task, triangulate};
-    use lofting::mesh::tri::optimize::{FINEST, OptimizeSettings};
+    use lofting::mesh::tri::optimize::{FINEST, OptimizeSettings, SearchBudget};
     use lofting::mesh::tri::shape::quality;
 
     struct Flat;
@@ -184,6 +184,7 @@ mod plate {
                 min_quality: 0.8,
                 fair_quality: 1.0,
                 max_length_ratio: 1.3,
+                searches: SearchBudget::FEW,
             };
             let (field, lattice) = (UniformSize(4.0 * 0.8), NodePlacement::Tree);
             let task = Task {

@@ -14,7 +14,7 @@ use lofting::geometry::construct::build::{arc_through, circle, line};
 use lofting::mesh::chart::outline::Outline;
 use lofting::mesh::chart::parametric_surface::{SizeField, UniformSize};
 use lofting::mesh::tri::build::{NodePlacement, Task, triangulate};
-use lofting::mesh::tri::optimize::{FINEST, OptimizeSettings};
+use lofting::mesh::tri::optimize::{FINEST, OptimizeSettings, SearchBudget};
 use lofting::model::measure;
 use lofting::network::Chain;
 use lofting::session::disk::{Disk, Outputs};
@@ -138,6 +138,7 @@ fn a_plate_with_holes_is_better_than_frontal_meshers() {
         min_quality: 0.92,
         fair_quality: 1.0,
         max_length_ratio: 1.4,
+        searches: SearchBudget::FEW,
     };
     let task = Task {
         interpolated: None,

@@ -10,7 +10,7 @@ use crate::mesh::chart::affine::Chart;
 use crate::mesh::chart::outline::Outline;
 use crate::mesh::chart::parametric_surface::UniformSize;
 use crate::mesh::tri::build::{NodePlacement, Task, triangulate};
-use crate::mesh::tri::optimize::{FINEST, OptimizeSettings};
+use crate::mesh::tri::optimize::{FINEST, OptimizeSettings, SearchBudget};
 use crate::surface::{Side, Surface};
 
 /// Points of a border, for each of its sides.
@@ -76,6 +76,7 @@ fn filled(surface: &Surface, mut outline: Outline, places: &[(f64, f64)], fine: 
         min_quality: 0.0,
         fair_quality: 1.0,
         max_length_ratio: f64::INFINITY,
+        searches: SearchBudget::FEW,
     };
     let task = Task {
         interpolated: None,

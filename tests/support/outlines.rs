@@ -5,7 +5,7 @@ use lofting::base::math::{cos, sin, sin_cos};
 use lofting::base::triangulate_points::NO_TRIANGLE;
 use lofting::mesh::chart::outline::Outline;
 use lofting::mesh::chart::parametric_surface::{ParametricSurface, Spot};
-use lofting::mesh::tri::optimize::{FINEST, OptimizeSettings};
+use lofting::mesh::tri::optimize::{FINEST, OptimizeSettings, SearchBudget};
 use lofting::mesh::tri::triangulation::Triangulation;
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
@@ -33,6 +33,7 @@ pub const CARE: OptimizeSettings = OptimizeSettings {
     min_quality: 0.9,
     fair_quality: 1.0,
     max_length_ratio: 1.25,
+    searches: SearchBudget::FEW,
 };
 
 /// Adds a polygon with steps of about a size.

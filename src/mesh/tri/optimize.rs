@@ -37,6 +37,31 @@ pub struct OptimizeSettings {
     pub fair_quality: f64,
     /// Longest edge over wanted length.
     pub max_length_ratio: f64,
+    /// Searches round the worst triangles.
+    pub searches: SearchBudget,
+}
+
+/// How many searches round bad triangles a face has.
+#[derive(Clone, Copy, Debug)]
+pub struct SearchBudget {
+    /// One triangle in so many is searched.
+    pub triangles_per_search: usize,
+    /// Of small faces one in so many more.
+    pub triangles_per_extra_search: usize,
+    /// Largest number of those.
+    pub max_extra_searches: usize,
+    /// Largest number of passes over the bad triangles.
+    pub max_rounds: usize,
+}
+
+impl SearchBudget {
+    /// A few: where limits of bends are bounded triangle by triangle, a search costs many times more.
+    pub const FEW: Self = Self { triangles_per_search: 8000, triangles_per_extra_search: 64, max_extra_searches: 8, max_rounds: 1 };
+
+    /// The searches of a face with so many triangles.
+    fn of(&self, triangles: usize) -> usize {
+        1 + (triangles / self.triangles_per_extra_search).min(self.max_extra_searches) + triangles / self.triangles_per_search
+    }
 }
 
 /// Quality that smoothing does not improve.
@@ -82,6 +107,8 @@ pub struct MeshOptimizer<'a> {
     size_factor: Vec<f64>,
     /// Triangles that could not be repaired.
     failed_repairs: FailedRepairs,
+    /// Triangles round which a search failed.
+    failed_searches: FailedRepairs,
 }
 
 impl<'a> MeshOptimizer<'a> {
@@ -109,6 +136,7 @@ impl<'a> MeshOptimizer<'a> {
             unseen: all,
             size_factor,
             failed_repairs: FailedRepairs::default(),
+            failed_searches: FailedRepairs::default(),
         }
     }
 
@@ -201,6 +229,7 @@ impl<'a> MeshOptimizer<'a> {
     fn wake(&mut self, t: u32) {
         for n in self.triangulation.tri[t as usize] {
             self.failed_repairs.change(n);
+            self.failed_searches.change(n);
             self.active.add(n);
             self.changed.add(n);
             self.unseen.add(n);
@@ -210,6 +239,7 @@ impl<'a> MeshOptimizer<'a> {
     /// A node or its triangles changed.
     fn touch(&mut self, node: u32) {
         self.failed_repairs.change(node);
+        self.failed_searches.change(node);
         self.active.add(node);
         self.moved.add(node);
         self.changed.add(node);

@@ -3,7 +3,7 @@
 
 use crate::mesh::size::border_spacing::SPACING;
 use crate::mesh::tri::longest::LONGEST;
-use crate::mesh::tri::optimize::{FINEST, OptimizeSettings};
+use crate::mesh::tri::optimize::{FINEST, OptimizeSettings, SearchBudget};
 
 /// Optimization of faces of even lengths. More rounds of smoothing move nodes on and make no triangle better: the mean quality differs in
 /// the third digit. Relaxation beyond the mean reaches in five rounds what takes eight at the mean.
@@ -14,6 +14,7 @@ pub(crate) const EVEN_FACE: OptimizeSettings = OptimizeSettings {
     min_quality: 0.92,
     fair_quality: 1.0,
     max_length_ratio: LONGEST / SPACING,
+    searches: SearchBudget { triangles_per_search: 400, triangles_per_extra_search: 16, max_extra_searches: 24, max_rounds: 4 },
 };
 
 /// The same where lengths grow from short pieces of the border: beyond the mean nodes would overshoot.
@@ -21,11 +22,18 @@ pub(crate) const GRADED_FACE: OptimizeSettings = OptimizeSettings { smoothing_ro
 
 /// The same where lengths vary with the bends of the surface: neighbouring triangles cannot all be equilateral, and division and repair
 /// move most nodes again.
-pub(crate) const BENT_FACE: OptimizeSettings =
-    OptimizeSettings { smoothing_rounds: 4, still_quality: 0.98, min_quality: 0.83, fair_quality: 0.78, ..EVEN_FACE };
+pub(crate) const BENT_FACE: OptimizeSettings = OptimizeSettings {
+    smoothing_rounds: 4,
+    still_quality: 0.98,
+    min_quality: 0.83,
+    fair_quality: 0.78,
+    searches: SearchBudget::FEW,
+    ..EVEN_FACE
+};
 
 /// The same for corners of quadtree cells, which start far from where they end. Halves of squares have a quality of 0.83.
-pub(crate) const TREE_FACE: OptimizeSettings = OptimizeSettings { smoothing_rounds: 30, min_quality: 0.8, ..EVEN_FACE };
+pub(crate) const TREE_FACE: OptimizeSettings =
+    OptimizeSettings { smoothing_rounds: 30, min_quality: 0.8, searches: SearchBudget::FEW, ..EVEN_FACE };
 
 /// Wanted lengths lowered until all triangles keep the limits (`triangle_fit.rs`).
 pub(crate) struct FitSettings {
@@ -93,12 +101,6 @@ pub(crate) const STAR_SEARCH: StarSearchSettings =
 
 /// Search round the worst triangles, where no single change helps (`optimize/local_search.rs`).
 pub(crate) struct LocalSearchSettings {
-    /// One triangle in so many is searched.
-    pub(crate) triangles_per_search: usize,
-    /// Of small faces one in so many more.
-    pub(crate) triangles_per_extra_search: usize,
-    /// Largest number of those.
-    pub(crate) max_extra_searches: usize,
     /// Largest number of sweeps over the nodes round a triangle.
     pub(crate) max_sweeps: usize,
     /// Number of sweeps after which a change without prospect is dropped.
@@ -111,16 +113,8 @@ pub(crate) struct LocalSearchSettings {
     pub(crate) max_penalty_ratio: f64,
 }
 
-pub(crate) const LOCAL_SEARCH: LocalSearchSettings = LocalSearchSettings {
-    triangles_per_search: 8000,
-    triangles_per_extra_search: 64,
-    max_extra_searches: 8,
-    max_sweeps: 10,
-    trial_sweeps: 3,
-    max_trial_ratio: 3.0,
-    sweep_share: 0.4,
-    max_penalty_ratio: 0.9,
-};
+pub(crate) const LOCAL_SEARCH: LocalSearchSettings =
+    LocalSearchSettings { max_sweeps: 10, trial_sweeps: 3, max_trial_ratio: 3.0, sweep_share: 0.4, max_penalty_ratio: 0.9 };
 
 /// Division of triangles that exceed a limit (`optimize/divide.rs`).
 pub(crate) struct DivisionSettings {

@@ -26,14 +26,17 @@ impl<'a> MeshOptimizer<'a> {
     /// Puts nodes into triangles that exceed a limit until none does, or too many do; what is left of `bad`.
     ///
     /// Where changes can be checked before they are made, only rough triangles are repaired while many are divided, since repaired ones that
-    /// exceed a limit have to be divided again; when all keep their limits, the others are repaired within the limits.
+    /// exceed a limit have to be divided again; when all keep their limits, the others are repaired within the limits, and the worst are searched.
     pub fn divide(&mut self, limit_check: &'a dyn LimitCheck, mut bad: Vec<u32>, job: &Job) -> Result<Vec<u32>> {
         let (wanted, mut settled) = (self.settings.min_quality, false);
         for round in 0..DIVISION.max_rounds {
             bad = self.broken(limit_check, &bad);
-            if bad.is_empty() && limit_check.is_per_triangle() && !settled && self.settings.smoothing_rounds > 0 {
+            let per_triangle = limit_check.is_per_triangle();
+            // Without bounds a face that needed no division is repaired already.
+            if bad.is_empty() && (per_triangle || round > 0) && !settled && self.settings.smoothing_rounds > 0 {
                 settled = true;
-                (self.limit_check, self.settings.min_quality) = (Some(limit_check), wanted);
+                self.settings.min_quality = wanted;
+                self.limit_check = if per_triangle { Some(limit_check) } else { self.limit_check };
                 self.changed = Pending::all(self.triangulation.p.len());
                 self.repair_last(job)?;
                 bad = self.broken(limit_check, &bad);
@@ -56,10 +59,10 @@ impl<'a> MeshOptimizer<'a> {
                 break;
             }
             self.flip_all();
-            let rough = limit_check.is_per_triangle() && round > 0 && bad.len() * DIVISION.few > self.triangulation.tri.len();
+            let rough = per_triangle && round > 0 && bad.len() * DIVISION.few > self.triangulation.tri.len();
             self.settings.min_quality = if rough { wanted - DIVISION.rough_reduction } else { wanted };
             // Triangles that alternate are repaired within the limits from now on.
-            if round >= DIVISION.rounds_before_strict_repair && limit_check.is_per_triangle() && self.limit_check.is_none() {
+            if round >= DIVISION.rounds_before_strict_repair && per_triangle && self.limit_check.is_none() {
                 self.limit_check = Some(limit_check);
             }
             self.repair();

@@ -45,23 +45,54 @@ impl MeshOptimizer<'_> {
         Ok(())
     }
 
-    /// Searches round the worst triangles below the wanted quality; how many got better.
+    /// Searches round the worst triangles below the wanted quality, the worst first, and again where a search changed something; how many
+    /// got better.
     fn search_worst(&mut self, job: &Job) -> Result<usize> {
-        let live = (0..self.triangulation.tri.len() as u32).filter(|t| self.triangulation.alive(*t));
-        let mut bad: Vec<(f64, u32)> =
-            live.map(|t| (self.penalized_quality(t), t)).filter(|(q, _)| *q < self.settings.min_quality).collect();
-        bad.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        let n = self.triangulation.tri.len();
-        bad.truncate(
-            1 + (n / LOCAL_SEARCH.triangles_per_extra_search).min(LOCAL_SEARCH.max_extra_searches) + n / LOCAL_SEARCH.triangles_per_search,
-        );
+        let budget = self.settings.searches;
+        let mut left = budget.of(self.triangulation.tri.len());
         let mut better = 0;
-        for (_, t) in bad {
-            job.go_on()?;
-            let still = self.triangulation.alive(t) && self.penalized_quality(t) < self.settings.min_quality;
-            better += usize::from(still && self.try_all(t));
+        for _ in 0..budget.max_rounds {
+            let before = better;
+            for t in self.bad_triangles() {
+                job.go_on()?;
+                if left == 0 {
+                    break;
+                }
+                if !self.is_bad(t) || !self.is_unsearched(t) {
+                    continue;
+                }
+                left -= 1;
+                if self.try_all(t) {
+                    better += 1;
+                } else {
+                    self.failed_searches.give_up(t);
+                }
+            }
+            if left == 0 || better == before {
+                break;
+            }
+            self.repair();
         }
         Ok(better)
+    }
+
+    fn is_bad(&self, t: u32) -> bool {
+        self.triangulation.alive(t) && self.penalized_quality(t) < self.settings.min_quality
+    }
+
+    /// Triangles below the wanted quality, the worst first.
+    fn bad_triangles(&self) -> Vec<u32> {
+        let all = (0..self.triangulation.tri.len() as u32).filter(|t| self.is_bad(*t));
+        let mut bad: Vec<(f64, u32)> = all.map(|t| (self.penalized_quality(t), t)).collect();
+        bad.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        bad.into_iter().map(|(_, t)| t).collect()
+    }
+
+    /// Whether something near a triangle changed since a search there failed.
+    fn is_unsearched(&mut self, t: u32) -> bool {
+        let near = self.rings_of(&self.triangulation.tri[t as usize].clone());
+        let since = self.failed_searches.since(t);
+        self.failed_searches.is_new(self.triangulation.nodes_of(&near).into_iter(), since)
     }
 
     fn try_all(&mut self, t: u32) -> bool {
