@@ -189,7 +189,7 @@ fn one_script((script, text): &(PathBuf, String), trial: Trial, dice: &mut Dice)
     (without.meshes, warm.from_cache)
 }
 
-/// Scripts of the project (a quarter of them in a short run) and one with a mesh of every shape. A quarter of them is edited, and of
+/// Scripts of the project (an eighth of them in a short run) and one with a mesh of every shape. A quarter of them is edited, and of
 /// another quarter what is kept is damaged: an evaluation of all of them takes a minute.
 #[test]
 fn results_are_the_same_cold_warm_edited_and_damaged() {

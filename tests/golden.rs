@@ -69,7 +69,7 @@ fn traces(model: &Path, threads: usize) -> Vec<(PathBuf, Vec<u8>)> {
 }
 
 /// Reports, messages, meshes, decks and pictures have the same bytes on one thread and on eight; the shell of 32 faces on two as
-/// well. A quarter of the scripts in a short run.
+/// well. An eighth of the scripts in a short run.
 #[test]
 fn threads_change_nothing() {
     let all = sample(scripts(&["examples", "tests/golden"]), 1);

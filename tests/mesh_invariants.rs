@@ -1,4 +1,4 @@
-//! What must hold of every mesh (`support/invariants.rs`), of goldens and examples (a quarter of them in a short run); those of the papers' models are looked at in
+//! What must hold of every mesh (`support/invariants.rs`), of goldens and examples (an eighth of them in a short run); those of the papers' models are looked at in
 //! `acceptance_mesh.rs`.
 
 use std::path::{Path, PathBuf};

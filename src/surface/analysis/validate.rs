@@ -13,7 +13,7 @@ use crate::surface::faults::SurfaceFault;
 
 /// Samples a direction and cell, beside those at its ends: at most and at least, and how many there may be in all.
 const SAMPLES: (usize, usize) = (9, 1);
-const MOST: usize = 1 << 20;
+const MOST: usize = 1 << 18;
 /// Samples at the ends of a cell lie this share of it inside: a border that turns back folds its corner only.
 const END: f64 = 1.0 / 1000.0;
 
