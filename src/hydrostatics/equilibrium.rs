@@ -20,6 +20,8 @@ const ROUNDS: usize = 60;
 const TURN: f64 = 0.15;
 /// Largest change of the depth of a round, as a share of the body's height.
 const RISE: f64 = 0.25;
+/// From here on the depth is found first, and trim and heel after it.
+const NEAR: f64 = 0.01;
 /// Rounds without a better position that end the search far from rest.
 const IDLE: usize = 6;
 
@@ -56,6 +58,50 @@ pub fn equilibrium(body: &Body, load: &Load, heel: Option<f64>, guess: Position)
     first.unwrap_or(Ok(guess))
 }
 
+/// Positions of equilibrium at heels one after the other: each search begins where the ones before lead to.
+#[derive(Clone, Debug)]
+pub struct HeelSeries {
+    first: Position,
+    /// The last three, the newest last.
+    found: Vec<Position>,
+}
+
+impl HeelSeries {
+    /// One that begins at a position.
+    pub fn new(first: Position) -> Self {
+        Self { first, found: Vec::new() }
+    }
+
+    /// The position of equilibrium at the next heel, radians.
+    ///
+    /// Fails as [`equilibrium`].
+    pub fn at(&mut self, body: &Body, load: &Load, heel: f64) -> Result<Position> {
+        let near = self.expected(heel).and_then(|guess| equilibrium(body, load, Some(heel), guess).ok());
+        let last = self.found.last().copied().unwrap_or(self.first);
+        let position = near.map_or_else(|| equilibrium(body, load, Some(heel), last), Ok)?;
+        self.found.push(position);
+        if self.found.len() > 3 {
+            self.found.remove(0);
+        }
+        Ok(position)
+    }
+
+    /// By the parabola through the last three positions; `None` where the heel is farther from them than they are from each other.
+    fn expected(&self, heel: f64) -> Option<Position> {
+        let [a, b, c] = &self.found[..] else { return None };
+        let (reach, steps) = ((heel - c.heel).abs(), [(b.heel - a.heel).abs(), (c.heel - b.heel).abs(), (c.heel - a.heel).abs()]);
+        if steps.contains(&0.0) || reach > steps[2] {
+            return None;
+        }
+        let weight = |own: &Position, others: [&Position; 2]| {
+            others.iter().map(|other| (heel - other.heel) / (own.heel - other.heel)).product::<f64>()
+        };
+        let weights = [weight(a, [b, c]), weight(b, [a, c]), weight(c, [a, b])];
+        let of = |value: fn(&Position) -> f64| weights[0] * value(a) + weights[1] * value(b) + weights[2] * value(c);
+        Some(Position { depth: of(|p| p.depth), trim: of(|p| p.trim), heel, ..*c })
+    }
+}
+
 /// Whether a small heel turns the body back.
 fn is_stable(body: &Body, load: &Load, at: &Position) -> bool {
     let water = at.water();
@@ -69,12 +115,16 @@ fn is_stable(body: &Body, load: &Load, at: &Position) -> bool {
 /// Newton from a first trim and heel.
 fn settled(body: &Body, load: &Load, free: bool, guess: Position) -> Result<Position> {
     let size = body.bounds.max - body.bounds.min;
-    let mut at = Position { depth: depth_of(body, load, guess), ..guess };
+    let mut at = guess;
     let mut best: Option<(f64, Position)> = None;
     let mut idle = 0;
-    for _ in 0..ROUNDS {
+    for round in 0..ROUNDS {
         job::poll();
-        let (off, step) = newton(body, load, free, &at, size.length());
+        let (mut off, mut step) = newton(body, load, free, &at, size.length());
+        if round == 0 && off > NEAR {
+            at.depth = depth_of(body, load, guess);
+            (off, step) = newton(body, load, free, &at, size.length());
+        }
         if best.is_none_or(|b| off < b.0) {
             (best, idle) = (Some((off, at)), 0);
         } else {

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::builtins;
-use crate::hydrostatics::equilibrium::{Load, equilibrium};
+use crate::hydrostatics::equilibrium::{HeelSeries, Load, equilibrium};
 use crate::hydrostatics::particulars::{center_of_buoyancy, particulars};
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
@@ -86,15 +86,14 @@ builtins! {
     ) -> Vec<Value> = |cx, hull, mass, cog, heels, density, base, midship| {
         let load = load(cx, mass, density, cog)?;
         let body = body(cx, &hull)?;
-        let mut guess = reference(&body, base, midship);
+        let mut series = HeelSeries::new(reference(&body, base, midship));
         let mut rows = Vec::with_capacity(heels.len());
         for heel in heels {
-            let at = equilibrium(&body, &load, Some(heel.0), guess)?;
+            let at = series.at(&body, &load, heel.0)?;
             let water = at.water();
             let wet = body.wet(&water)?;
             let across = |p: DVec3| water.local(p).y - water.local(center_of_buoyancy(&wet, &water)).y;
             let (gz, kn) = (across(cog.0), across(at.keel()));
-            guess = at;
             rows.push(cx.record([
                 ("heel", Value::angle(at.heel)),
                 ("gz", Value::length(gz)),
