@@ -14,7 +14,13 @@ pub(crate) const EVEN_FACE: OptimizeSettings = OptimizeSettings {
     min_quality: 0.92,
     fair_quality: 1.0,
     max_length_ratio: LONGEST / SPACING,
-    searches: SearchBudget { triangles_per_search: 400, triangles_per_extra_search: 16, max_extra_searches: 24, max_rounds: 4 },
+    searches: SearchBudget {
+        triangles_per_search: 400,
+        triangles_per_extra_search: 16,
+        max_extra_searches: 24,
+        max_rounds: 4,
+        by_shape: true,
+    },
 };
 
 /// The same where lengths grow from short pieces of the border: beyond the mean nodes would overshoot.

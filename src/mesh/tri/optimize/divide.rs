@@ -36,8 +36,10 @@ impl<'a> MeshOptimizer<'a> {
             if bad.is_empty() && (per_triangle || round > 0) && !settled && self.settings.smoothing_rounds > 0 {
                 settled = true;
                 self.settings.min_quality = wanted;
-                self.limit_check = if per_triangle { Some(limit_check) } else { self.limit_check };
-                self.changed = Pending::all(self.triangulation.p.len());
+                if per_triangle {
+                    self.limit_check = Some(limit_check);
+                    self.changed = Pending::all(self.triangulation.p.len());
+                }
                 self.repair_last(job)?;
                 bad = self.broken(limit_check, &bad);
             }

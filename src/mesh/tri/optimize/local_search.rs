@@ -23,8 +23,10 @@ enum Change {
 /// The triangles round some nodes.
 #[derive(Clone, Copy)]
 struct LocalQuality {
-    /// Their least quality.
+    /// Their least quality, lowered where sides are too long.
     least: f64,
+    /// Their least quality by shape alone.
+    least_shape: f64,
     /// Sum of the eighth powers of their distances from quality 1.
     penalty: f64,
 }
@@ -51,7 +53,7 @@ impl MeshOptimizer<'_> {
         let budget = self.settings.searches;
         let mut left = budget.of(self.triangulation.tri.len());
         let mut better = 0;
-        for _ in 0..budget.max_rounds {
+        for round in 1..=budget.max_rounds {
             let before = better;
             for t in self.bad_triangles() {
                 job.go_on()?;
@@ -68,7 +70,7 @@ impl MeshOptimizer<'_> {
                     self.failed_searches.give_up(t);
                 }
             }
-            if left == 0 || better == before {
+            if left == 0 || better == before || round == budget.max_rounds {
                 break;
             }
             self.repair();
@@ -76,14 +78,20 @@ impl MeshOptimizer<'_> {
         Ok(better)
     }
 
+    /// The quality by which triangles are searched.
+    fn searched_quality(&self, t: u32) -> f64 {
+        let corners = self.triangulation.tri[t as usize];
+        if self.settings.searches.by_shape { self.triangulation.shape(corners) } else { self.penalized_quality(t) }
+    }
+
     fn is_bad(&self, t: u32) -> bool {
-        self.triangulation.alive(t) && self.penalized_quality(t) < self.settings.min_quality
+        self.triangulation.alive(t) && self.searched_quality(t) < self.settings.min_quality
     }
 
     /// Triangles below the wanted quality, the worst first.
     fn bad_triangles(&self) -> Vec<u32> {
         let all = (0..self.triangulation.tri.len() as u32).filter(|t| self.is_bad(*t));
-        let mut bad: Vec<(f64, u32)> = all.map(|t| (self.penalized_quality(t), t)).collect();
+        let mut bad: Vec<(f64, u32)> = all.map(|t| (self.searched_quality(t), t)).collect();
         bad.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         bad.into_iter().map(|(_, t)| t).collect()
     }
@@ -127,10 +135,15 @@ impl MeshOptimizer<'_> {
     }
 
     fn local_quality(&self, some: &[u32]) -> LocalQuality {
-        some.iter().fold(LocalQuality { least: f64::INFINITY, penalty: 0.0 }, |quality, t| {
+        some.iter().fold(LocalQuality { least: f64::INFINITY, least_shape: f64::INFINITY, penalty: 0.0 }, |quality, t| {
             let own = self.penalized_quality(*t);
             let short = (1.0 - own) * (1.0 - own);
-            LocalQuality { least: quality.least.min(own), penalty: quality.penalty + short * short * short * short }
+            let shape = self.triangulation.shape(self.triangulation.tri[*t as usize]);
+            LocalQuality {
+                least: quality.least.min(own),
+                least_shape: quality.least_shape.min(shape),
+                penalty: quality.penalty + short * short * short * short,
+            }
         })
     }
 
@@ -185,7 +198,9 @@ impl MeshOptimizer<'_> {
         let (mut best, mut most): (Option<Swept>, f64) = (None, most);
         for round in 0..=LOCAL_SEARCH.max_sweeps {
             let now = self.local_quality(&all);
-            if now.penalty < most && now.least >= before.least && all.iter().all(|t| self.triangulation.chart_area(*t) > 0.0) {
+            let is_shaped = !self.settings.searches.by_shape || now.least_shape >= before.least_shape;
+            let is_no_worse = now.least >= before.least && is_shaped;
+            if now.penalty < most && is_no_worse && all.iter().all(|t| self.triangulation.chart_area(*t) > 0.0) {
                 let free = nodes.iter().filter(|n| self.triangulation.is_free(**n));
                 let places = free.map(|n| (*n, self.triangulation.xy[*n as usize], self.triangulation.p[*n as usize])).collect();
                 best = Some(Swept { penalty: now.penalty, places });
