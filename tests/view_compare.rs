@@ -26,8 +26,8 @@ fn shown(model: &mut ShownModel, text: &str, compare: Compare) -> Value {
     serde_json::from_str(&frame.json).unwrap()
 }
 
-/// The box of the foot beside the model.
-fn foot(frame: &Value) -> Option<String> {
+/// The area of the wall beside the model.
+fn area_of_then(frame: &Value) -> Option<String> {
     let things = frame["compare"]["things"].as_array()?;
     let wall = things.iter().find(|thing| thing["name"] == "wall")?;
     let fact = wall["facts"].as_array()?.iter().find(|fact| fact[0] == "area")?;
@@ -55,7 +55,7 @@ fn another_revision_has_the_files_of_then() {
     // Today the foot is in the script that is used, and not in a table.
     write("lower.loft", "units m\ncurve foot = line((0, 0, 0), (7, 0, 0))\n");
     let mut model = ShownModel::new("wall.loft", &folder.join("wall.loft"), &[], &[]);
-    let of = |model: &mut ShownModel, compare: Compare| foot(&shown(model, SCRIPT, compare));
+    let of = |model: &mut ShownModel, compare: Compare| area_of_then(&shown(model, SCRIPT, compare));
     assert_eq!(of(&mut model, Compare::Revision("HEAD".to_owned())).as_deref(), Some("4 m²"));
     assert_eq!(of(&mut model, Compare::Revision("HEAD~1".to_owned())).as_deref(), Some("3 m²"));
     assert_eq!(of(&mut model, Compare::Golden).as_deref(), Some("3 m²"), "of the commit that wrote the golden");
@@ -64,7 +64,10 @@ fn another_revision_has_the_files_of_then() {
     assert!(wall["facts"].as_array().unwrap().iter().any(|fact| fact[1] == "5 m²"), "{wall}");
     let why = shown(&mut model, SCRIPT, Compare::Revision("nothing".to_owned()));
     assert_eq!(why["compare"]["failed"], "there is no revision `nothing`");
-    fs::remove_file(folder.join("wall.golden")).unwrap();
+    // A golden that is deleted is still that of the commit that wrote it.
+    git(&folder, &["rm", "-q", "wall.golden"]);
+    git(&folder, &["commit", "-q", "-m", "no golden"]);
+    assert_eq!(of(&mut model, Compare::Golden).as_deref(), Some("3 m²"));
     let bare = ShownModel::new("bare.loft", &folder.join("bare.loft"), &[], &[]);
     write("bare.loft", "units m\n");
     let why = shown(&mut { bare }, "units m\n", Compare::Golden)["compare"]["failed"].as_str().unwrap().to_owned();

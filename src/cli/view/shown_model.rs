@@ -20,6 +20,8 @@ pub struct ShownModel {
     viewer: Viewer,
     /// The other state that it is compared with, and what it was made of.
     other: Option<(OtherState, View)>,
+    /// A commit that was checked out, and the one that wrote the golden then.
+    golden: Option<(Revision, Revision)>,
     name: String,
     script: PathBuf,
     allow: Vec<PathBuf>,
@@ -60,7 +62,7 @@ impl ShownModel {
         let shown = name.to_owned();
         let viewer = Viewer::new(&shown, Some(script), allow, clock.clone());
         let (allow, sets) = (allow.to_vec(), sets.to_vec());
-        Self { viewer, other: None, name: shown, script: script.to_owned(), allow, sets, clock }
+        Self { viewer, other: None, golden: None, name: shown, script: script.to_owned(), allow, sets, clock }
     }
 
     /// The files that the model read, or looked for and did not find.
@@ -79,43 +81,60 @@ impl ShownModel {
 
     /// The state to compare with, under the same params; `None` when it was stopped.
     fn other(&mut self, compare: &Compare, wanted: &Wanted, job: &Job) -> Option<frame::Compare> {
-        let (with, revision) = match compare {
-            Compare::Golden => ("golden".to_owned(), Revision::of_golden(&self.script)),
-            Compare::Revision(name) => (format!("revision:{name}"), Revision::named(&self.script, name)),
+        let with = match compare {
+            Compare::Golden => "golden".to_owned(),
+            Compare::Revision(name) => format!("revision:{name}"),
         };
         let failed = |why: String| Some(frame::Compare { with: with.clone(), things: Vec::new(), failed: Some(why) });
-        let found = revision.and_then(|revision| Ok((revision.text(&self.script)?, revision)));
-        let (text, revision) = match found {
-            Ok(found) => found,
+        let revision = match self.revision(compare) {
+            Ok(revision) => revision,
             Err(why) => return failed(why),
         };
         let state = OtherState { revision, sets: wanted.sets.clone(), chord_error: wanted.chord_error };
         if self.other.as_ref().is_none_or(|(known, _)| *known != state) {
+            let text = match state.revision.text(&self.script) {
+                Ok(text) => text,
+                Err(why) => return failed(why),
+            };
             match self.at_revision(&state.revision, &Wanted { text, ..wanted.clone() }, job) {
                 Ok(view) => self.other = Some((state, view?)),
                 Err(bug) => return failed(bug.what),
             }
         }
-        let things = self.other.as_ref().map(|(_, view)| view.frame.things.clone()).unwrap_or_default();
-        Some(frame::Compare { with, things, failed: None })
+        let frame = &self.other.as_ref()?.1.frame;
+        let error = frame.diagnostics.iter().find(|said| said.severity == "error");
+        match error {
+            Some(error) if frame.things.is_empty() => failed(format!("the script of then is wrong today: {}", error.message)),
+            _ => Some(frame::Compare { with, things: frame.things.clone(), failed: None }),
+        }
+    }
+
+    /// The commit to compare with; that of the golden is looked for once for each commit that is checked out.
+    fn revision(&mut self, compare: &Compare) -> Result<Revision, String> {
+        let Compare::Revision(name) = compare else {
+            let head = Revision::named(&self.script, "HEAD")?;
+            if self.golden.as_ref().is_none_or(|(known, _)| *known != head) {
+                self.golden = Some((head, Revision::of_golden(&self.script)?));
+            }
+            return self.golden.as_ref().map(|(_, of)| of.clone()).ok_or_else(String::new);
+        };
+        Revision::named(&self.script, name)
     }
 
     /// The model with all files that it reads as they were then; those of no repository, and what is no text, as they are.
     fn at_revision(&self, revision: &Revision, wanted: &Wanted, job: &Job) -> Result<Option<View>, Bug> {
-        let mut viewer = Viewer::new(&self.name, Some(&self.script), &self.allow, self.clock.clone());
         let mut texts: BTreeMap<PathBuf, Option<Arc<str>>> = BTreeMap::new();
+        // Most files of then are those of today.
+        let mut files = self.viewer.files().to_vec();
         loop {
+            texts.extend(files.into_iter().map(|file| (file.clone(), revision.text(&file).ok().map(Arc::from))));
+            let mut viewer = Viewer::new(&self.name, Some(&self.script), &self.allow, self.clock.clone());
+            viewer.set_unsaved(texts.iter().filter_map(|(file, text)| Some((file.clone(), text.clone()?))).collect());
             let view = viewer.show(wanted, job)?;
-            let unknown: Vec<PathBuf> = viewer.files().iter().filter(|file| !texts.contains_key(*file)).cloned().collect();
-            let found: Vec<(PathBuf, Option<Arc<str>>)> =
-                unknown.into_iter().map(|file| (file.clone(), revision.text(&file).ok().map(Arc::from))).collect();
-            let is_new = found.iter().any(|(_, text)| text.is_some());
-            texts.extend(found);
-            if view.is_none() || !is_new {
+            files = viewer.files().iter().filter(|file| !texts.contains_key(*file)).cloned().collect();
+            if view.is_none() || files.is_empty() {
                 return Ok(view);
             }
-            // The files of then may read others.
-            viewer.set_unsaved(texts.iter().filter_map(|(file, text)| Some((file.clone(), text.clone()?))).collect());
         }
     }
 }

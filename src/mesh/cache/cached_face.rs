@@ -108,6 +108,12 @@ impl FaceKey<'_> {
 impl CachedFace {
     /// Of a computed face.
     pub fn of(free: &Free, inside: &FreeInside) -> Self {
+        debug_assert!(
+            inside.decided.is_sound(inside.points.len()),
+            "{} deciders of {} nodes",
+            inside.decided.of.len(),
+            inside.points.len()
+        );
         Self { free: free.clone(), points: inside.points.clone(), decided: inside.decided.clone(), tally: inside.tally }
     }
 

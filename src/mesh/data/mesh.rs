@@ -106,7 +106,7 @@ impl Mesh {
         let (corners, all) = (self.corner_count(), self.nodes.len() as u32);
         let own_mids = self.nodes.split_off(corners);
         let more = other.corner_count();
-        if !(self.sizes.is_empty() && other.sizes.is_empty()) {
+        if !(self.sizes.of.is_empty() && other.sizes.of.is_empty()) {
             self.sizes.append(corners, &other.sizes, more);
         }
         self.shift_mids(more as u32);

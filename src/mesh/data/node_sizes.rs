@@ -32,11 +32,6 @@ impl NodeSizes {
         Self { of: vec![0; nodes], lengths: vec![f32::NAN; nodes], ..Self::default() }
     }
 
-    /// Whether nothing is known of any node.
-    pub fn is_empty(&self) -> bool {
-        self.words.len() < 2
-    }
-
     /// Whether it is of so many nodes, or of none, each with a word that is there.
     pub fn is_sound(&self, nodes: usize) -> bool {
         let words = self.words.len();
@@ -62,7 +57,7 @@ impl NodeSizes {
         }
     }
 
-    /// Adds the nodes of another mesh after these; of those of which there is nothing nothing is known.
+    /// Adds those of the nodes of another mesh, `more`, after those of the `nodes` here; nodes of which nothing is told are unknown.
     pub fn append(&mut self, nodes: usize, other: &Self, more: usize) {
         let place_of: Vec<u32> = other.words.iter().map(|word| self.word(word)).collect();
         self.of.resize(nodes, 0);

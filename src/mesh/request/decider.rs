@@ -31,7 +31,7 @@ pub struct Decider {
 }
 
 /// What decided the sizes of a face: each decider with what it decided, and the decider of each node.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default)]
 pub struct Decided {
     /// Deciders, in order of [`Why`].
     pub deciders: Vec<Decider>,
@@ -39,6 +39,13 @@ pub struct Decided {
     pub of: Vec<u32>,
     /// Asked length of the edges at each node, model units; not a number where no length was asked.
     pub lengths: Vec<f32>,
+}
+
+impl PartialEq for Decided {
+    fn eq(&self, other: &Self) -> bool {
+        let bits = |own: &Self| own.lengths.iter().map(|length| length.to_bits()).collect::<Vec<_>>();
+        self.deciders == other.deciders && self.of == other.of && bits(self) == bits(other)
+    }
 }
 
 impl Decided {
@@ -56,6 +63,14 @@ impl Decided {
         decider.nodes += inner;
         self.of.push(place as u32);
         self.lengths.push(length as f32);
+    }
+
+    /// Other nodes, all by one decider without asked lengths; those before have decided something that is no longer to be seen.
+    pub fn other_nodes(&self, points: &[DVec3], fixed: usize, why: Why) -> Self {
+        let deciders = self.deciders.iter().map(|d| Decider { nodes: 0, ..*d }).collect();
+        let mut other = Self { deciders, ..Self::default() };
+        points.iter().enumerate().for_each(|(n, p)| other.push(why, f64::NAN, *p, n >= fixed));
+        other.sorted()
     }
 
     /// Puts the deciders in order.

@@ -86,6 +86,13 @@ pub(crate) fn fitted(face_input: &FaceInput, face: &Face, chart: &Chart, outline
             (Method::Display, Ok(fitted)) => {
                 fit.coarsen(&mut fitted.triangulation, job)?;
                 fitted.tally = None;
+                // Nodes were joined and moved as far as the limits allow.
+                let by_limits = fit.limits.chord.is_some() || fit.limits.angle.is_some();
+                fitted.decided = fitted.decided.other_nodes(
+                    &fitted.triangulation.p,
+                    fitted.triangulation.fixed as usize,
+                    if by_limits { Why::Bends } else { Why::Size },
+                );
             }
             (_, Ok(fitted)) => fit.flip_sharp(&mut fitted.triangulation),
             _ => {}
