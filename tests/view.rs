@@ -64,6 +64,8 @@ impl Model for Echo {
                     let bytes = (0..size).map(|i| (i.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
                     buffers.push(Buffer { key: format!("{:032x}", size), bytes: Arc::new(bytes) });
                 }
+                // Whatever the server wants.
+                Some(("ignores", time)) => thread::sleep(Duration::from_millis(time.parse().unwrap())),
                 Some(("shows", part)) => {
                     let json = json!({ "loft": 1, "number": request.number - 1, "partial": true, "text": part });
                     evaluation.show_partial(Frame { json: json.to_string(), buffers: Vec::new() });
@@ -450,7 +452,7 @@ fn ten_thousand_connections_leave_nothing_behind() {
     let view = View::new("many", Some("hello\n"));
     view.frame_of("hello\n");
     let mut tab = view.tab("watching", 0);
-    assert_eq!(tab.frame(), 1);
+    assert_eq!(tab.frame(), 2);
     let (files, memory) = (open_files(), of_process("VmRSS"));
     for i in 0..10_000 {
         let mut stream = view.connect();
@@ -522,7 +524,7 @@ fn a_tab_that_takes_nothing_costs_nothing() {
     view.save("two\n");
     view.frame_of("two\n");
     let mut last = 0;
-    while last < 2 {
+    while last < 4 {
         let number = deaf.frame();
         assert!(number > last);
         last = number;
@@ -533,11 +535,11 @@ fn a_tab_that_takes_nothing_costs_nothing() {
 fn saves_are_seen_however_they_are_made() {
     let view = View::new("saves", Some("one\n"));
     let mut tab = view.tab("a", 0);
-    assert_eq!(tab.frame(), 1);
+    assert_eq!(tab.frame(), 2);
     // Renamed over it.
     fs::write(view.folder.join("new"), "two\n").unwrap();
     fs::rename(view.folder.join("new"), &view.script).unwrap();
-    assert_eq!(tab.frame(), 2);
+    assert_eq!(tab.frame(), 4);
     view.frame_of("two\n");
     // Moved away and written anew.
     fs::rename(&view.script, view.folder.join("model.loft~")).unwrap();
@@ -553,7 +555,7 @@ fn saves_are_seen_however_they_are_made() {
         file.write_all(b"four\n").unwrap();
     }
     drop(file);
-    assert_eq!(tab.frame(), 4);
+    assert_eq!(tab.frame(), 8);
     view.frame_of(&"four\n".repeat(20));
     // Of the same length, at once after another.
     view.save("abc\n");
@@ -603,7 +605,7 @@ fn a_script_that_goes_away_and_comes_back() {
     let mut late = view.tab("b", 0);
     assert_eq!((late.event().unwrap().0.as_str(), late.event().unwrap().0.as_str()), ("frame", "gone"));
     view.save("one\n");
-    assert_eq!((tab.frame(), late.frame()), (2, 2));
+    assert_eq!((tab.frame(), late.frame()), (4, 4));
     assert_eq!(view.frame_of("one\n")["sets"], json!([["w", "3 m"]]));
 }
 
@@ -673,7 +675,7 @@ fn a_newer_save_stops_the_evaluation() {
     assert_eq!((work["number"].as_u64(), work["phase"].as_str(), work["of"].as_u64()), (Some(2), Some("waiting"), Some(100)));
     view.replace("quick\n");
     let began = Instant::now();
-    assert_eq!(tab.frame(), 2);
+    assert_eq!(tab.frame(), 4);
     assert!(began.elapsed() < PATIENCE, "an evaluation of a minute was not stopped");
     assert_eq!(view.stopped.load(Ordering::SeqCst), 1);
     // A moved param lets a short evaluation end, and stops a long one.
@@ -697,7 +699,7 @@ fn a_newer_save_stops_the_evaluation() {
 fn the_user_stops_an_evaluation() {
     let view = View::new("stop", Some("one\n"));
     let mut tab = view.tab("a", 0);
-    assert_eq!(tab.frame(), 1);
+    assert_eq!(tab.frame(), 2);
     view.save("takes 60000\n");
     tab.wait_for("work");
     assert_eq!(view.post("stop", &json!({})).json(), json!({ "ok": true }));
@@ -820,12 +822,26 @@ fn a_partial_frame_comes_before_the_whole_one_and_not_after_a_stop() {
         (stopped["number"].as_u64(), &stopped["text"], &stopped["diagnostics"][0]["code"]),
         (Some(6), &json!("part"), &json!("stopped"))
     );
+    assert_eq!([tab.frame(), tab.frame()], [5, 6]);
+    // A script that goes away leaves none either.
+    view.replace("shows part\ntakes 60000\n\n");
+    assert_eq!(view.frame_with(|frame| frame["partial"] == true)["number"], 7);
+    fs::remove_file(&view.script).unwrap();
+    assert_eq!(view.frame_with(|frame| frame["partial"] != true)["number"], 8);
+    view.replace("one\n");
+    assert_eq!(view.frame_of("one\n")["number"], 10);
     // A stopped evaluation shows no part of it any more.
-    view.replace("takes 60000\nshows late\n");
-    while tab.wait_for("work")["number"] != 8 {}
-    view.replace("two\n");
-    let frame = view.frame_of("two\n");
-    assert!(frame["number"].as_u64() > Some(8) && frame["partial"].is_null());
+    view.replace("ignores 600\nshows late\nignores 300\n");
+    while tab.wait_for("work")["number"] != 12 {}
+    view.replace("ignores 200\ntwo\n");
+    loop {
+        let frame = view.get("frame").json();
+        assert_ne!(frame["text"], "late");
+        if frame["number"] == 14 {
+            break;
+        }
+        thread::sleep(Duration::from_millis(5));
+    }
 }
 
 #[test]

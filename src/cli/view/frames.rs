@@ -32,6 +32,8 @@ struct State {
     buffers: BTreeMap<String, Used>,
     /// Bytes of all buffers.
     bytes: usize,
+    /// The newest whole one.
+    whole: Option<Arc<Packed>>,
 }
 
 #[derive(Debug)]
@@ -67,6 +69,9 @@ impl Frames {
             keys.push(key);
         }
         let json = Arc::new(Packed::new(Arc::new(frame.json.into_bytes())));
+        if number.is_multiple_of(2) {
+            state.whole = Some(json.clone());
+        }
         state.frames.push_back(Kept { number, json, keys, fetched: None });
         state.forget();
         true
@@ -86,6 +91,16 @@ impl Frames {
         let newest = state.frames.back()?;
         let buffer = |key: &String| Some(Buffer { key: key.clone(), bytes: state.buffers.get(key)?.packed.plain().clone() });
         Some((newest.json.plain().to_vec(), newest.keys.iter().filter_map(buffer).collect()))
+    }
+
+    /// The newest whole frame, as JSON.
+    pub fn newest_whole(&self) -> Option<Arc<Packed>> {
+        self.state().whole.clone()
+    }
+
+    /// Whether the newest frame is partial: its number is odd.
+    pub fn is_partial(&self) -> bool {
+        self.number() % 2 == 1
     }
 
     /// Number of the newest frame; 0 before the first.

@@ -183,6 +183,7 @@ fn watch(shared: &Arc<Shared>) {
         let news = shared.watch.lock().unwrap_or_else(PoisonError::into_inner).look();
         if news.gone {
             shared.work.gone();
+            end_partial(shared);
             shared.events.tell(Kind::Gone, &json!({ "file": shared.name }));
         }
         match news.text {
@@ -226,13 +227,23 @@ fn evaluate(shared: &Arc<Shared>, mut model: Box<dyn Model>) {
             }
             Err(_) => Some(told_frame(shared, running.number, ("error", "bug"), BUG)),
         };
-        // A partial frame must not be the last one; where an evaluation follows, that ends it.
-        let is_left = frame.is_none() && !shared.work.is_due() && shared.frames.number() == number;
-        let frame = frame.or_else(|| is_left.then(|| told_frame(shared, running.number, ("note", "stopped"), STOPPED)));
         if frame.is_some_and(|frame| shared.frames.publish(running.number, frame)) {
             shared.events.frame(running.number);
         }
+        if !shared.work.is_due() {
+            end_partial(shared);
+        }
         shared.work.finished(|data| shared.events.tell(Kind::Work, data));
+    }
+}
+
+/// A partial frame must not be the last one: where no evaluation follows it, a whole one does.
+fn end_partial(shared: &Shared) {
+    if shared.frames.is_partial() {
+        let number = shared.frames.number() + 1;
+        if shared.frames.publish(number, told_frame(shared, number, ("note", "stopped"), STOPPED)) {
+            shared.events.frame(number);
+        }
     }
 }
 
@@ -246,6 +257,13 @@ fn told_frame(shared: &Shared, number: u64, (severity, code): (&str, &str), mess
     frame["number"] = number.into();
     frame["ok"] = false.into();
     frame["stale"] = true.into();
+    let whole: Option<Value> = shared.frames.newest_whole().and_then(|whole| serde_json::from_slice(whole.plain()).ok());
+    if let (true, Some(whole)) = (frame["partial"] == true, whole) {
+        // A partial frame has no checks and no tables; what it leaves out is that of the whole one before.
+        for list in ["checks", "reports", "pictures", "outputs"] {
+            frame[list] = whole[list].clone();
+        }
+    }
     frame["partial"] = false.into();
     frame["diagnostics"] = json!([{ "severity": severity, "code": code, "message": message, "help": null, "places": [], "points": [],
         "size": null, "things": [] }]);

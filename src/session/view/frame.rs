@@ -106,6 +106,8 @@ pub struct Thing {
     pub unmade: Option<String>,
     /// Drawn as of an earlier frame.
     pub stale: bool,
+    /// Not made yet, in a partial frame.
+    pub pending: bool,
 }
 
 /// A buffer of a thing.

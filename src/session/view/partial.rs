@@ -1,10 +1,8 @@
 //! The frame of a model whose shapes are evaluated and the rest is not yet: what can be seen early is shown early.
 
-use std::collections::BTreeSet;
-
-use super::frame::{Frame, Param, Source, Thing, VERSION};
+use super::frame::{Frame, Param, Place, Source, Thing, VERSION};
 use super::things::Drawn;
-use super::viewer::{View, Wanted, corners_of};
+use super::viewer::{ThingNames, View, Wanted, base_of, corners_of};
 
 /// Least time from the shapes of a model to its end for which a frame of its own is worth drawing, seconds.
 const WORTH: f64 = 0.15;
@@ -16,6 +14,8 @@ pub(super) struct Early {
     pub sources: Vec<Source>,
     pub params: Vec<Param>,
     pub drawn: Drawn,
+    /// Names that the script declares, with the kinds of those that are made after the shapes, and their lines.
+    pub declared: Vec<(String, Option<&'static str>, Option<Place>)>,
 }
 
 /// Whether shapes are shown before the rest: at first, and where the rest took its time in the run before.
@@ -23,22 +23,33 @@ pub(super) fn is_worth_it(last: &View, rest: f64) -> bool {
     last.frame.loft == 0 || rest > WORTH
 }
 
-/// The frame before the one that is wanted. What the last frame had and this one has not made yet stays, marked.
+/// The frame before the one that is wanted. What the last frame had and this one has not made yet stays, marked; what it had not is listed.
 pub(super) fn view(wanted: &Wanted, early: Early, last: &View) -> View {
-    let Early { model, units, sources, params, drawn } = early;
+    let Early { model, units, sources, params, drawn, declared } = early;
     let Drawn { mut things, mut buffers, chord_error } = drawn;
     for thing in &mut things {
         let before = last.frame.things.iter().find(|before| before.name == thing.name && before.buffers == thing.buffers);
         thing.facts = before.map(|before| before.facts.clone()).unwrap_or_default();
     }
-    let made: BTreeSet<&str> = things.iter().map(|thing| &*thing.name).collect();
-    let pending: Vec<Thing> = last.frame.things.iter().filter(|thing| !made.contains(&*thing.name)).cloned().collect();
-    for thing in pending {
-        for row in &thing.buffers {
-            buffers.extend(last.buffers.get(&row.key).map(|buffer| (row.key.clone(), buffer.clone())));
+    for (name, kind, line) in declared {
+        let is_of = |thing: &&Thing| base_of(&thing.name) == name;
+        if things.iter().any(|thing| is_of(&thing)) {
+            continue;
         }
-        things.push(Thing { stale: true, unmade: None, ..thing });
+        let chain: Vec<Place> = line.into_iter().collect();
+        let before: Vec<Thing> = last.frame.things.iter().filter(is_of).cloned().collect();
+        if let (true, Some(kind)) = (before.is_empty(), kind) {
+            things.push(Thing { name, kind, chain: chain.clone(), pending: true, ..Thing::default() });
+        }
+        for thing in before {
+            for row in &thing.buffers {
+                buffers.extend(last.buffers.get(&row.key).map(|buffer| (row.key.clone(), buffer.clone())));
+            }
+            things.push(Thing { stale: true, pending: true, unmade: None, chain: chain.clone(), ..thing });
+        }
     }
+    let names = ThingNames::new(&things);
+    things.iter_mut().for_each(|thing| thing.of = names.all(&thing.of));
     let number = wanted.number.saturating_sub(1);
     let frame = Frame {
         loft: VERSION,

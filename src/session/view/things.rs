@@ -50,6 +50,8 @@ pub(super) struct Drawn {
 pub(super) struct Kept {
     faces: BTreeMap<String, KeptFaces>,
     meshes: BTreeMap<String, (Arc<Mesh>, Option<Buffer>)>,
+    /// How far display triangles were from their surfaces at most, model units; `None` before the first whole frame.
+    fine: Option<f64>,
 }
 
 /// What surfaces were drawn as, and all that it depends on.
@@ -162,7 +164,9 @@ pub(super) enum Evaluated {
 pub(super) fn draw(cx: &mut Cx, symbols: &[Symbol], chord_error: Option<f64>, evaluated: Evaluated, kept: &mut Kept) -> Drawn {
     let Some(tolerance) = cx.tolerance_used() else { return Drawn::default() };
     let items = items(cx, symbols, evaluated);
-    let fine = fineness(chord_error, around(&items).diagonal()).max(tolerance.point);
+    let usual = fineness(chord_error, around(&items).diagonal()).max(tolerance.point);
+    // The box of all may be larger than that of the shapes: what is drawn early is not to be drawn again.
+    let fine = kept.fine.filter(|_| evaluated == Evaluated::Shapes).unwrap_or(usual);
     let mut drawn = Drawn { chord_error: fine, ..Drawn::default() };
     let scene = scene(cx, &items);
     let declared = declared_surfaces(&items);
@@ -206,9 +210,12 @@ pub(super) fn draw(cx: &mut Cx, symbols: &[Symbol], chord_error: Option<f64>, ev
         drawn.buffers.extend(buffers.into_iter().map(|buffer| (buffer.key.clone(), buffer)));
         drawn.things.push(thing);
     }
-    if evaluated == Evaluated::Shapes {
+    if evaluated == Evaluated::Whole {
+        now.fine = Some(fine);
+    } else {
         // What is drawn later may still be as it was.
-        let Kept { faces, meshes } = std::mem::take(kept);
+        let Kept { faces, meshes, fine } = std::mem::take(kept);
+        now.fine = fine;
         for (name, before) in faces {
             now.faces.entry(name).or_insert(before);
         }

@@ -16,6 +16,7 @@ use crate::base::job::Job;
 use crate::lang::diag::diagnostic::FileId;
 use crate::lang::eval::context::Cx;
 use crate::lang::run::symbols::Symbol;
+use crate::lang::syntax::ast::Keyword;
 use crate::lang::values::units::number_text;
 use crate::session::collect;
 use crate::session::guard::Bug;
@@ -129,7 +130,18 @@ impl Viewer {
                 let (model, units) = (places.name.clone(), cx.unit().name.to_owned());
                 // Without a shape there is nothing to look at yet.
                 if !drawn.buffers.is_empty() {
-                    early(partial::view(wanted, Early { model, units, sources, params: params::params(cx), drawn }, last));
+                    let params = params::params(cx);
+                    let declared = symbols.iter().filter_map(|symbol| {
+                        let line = place(&cx.program.sources, symbol.file, symbol.span, None);
+                        let kind = match symbol.keyword {
+                            Keyword::Mesh => Some("mesh"),
+                            Keyword::Group => Some("group"),
+                            _ => None,
+                        };
+                        Some((symbol.name.clone()?, kind, line))
+                    });
+                    let declared = declared.collect();
+                    early(partial::view(wanted, Early { model, units, sources, params, drawn, declared }, last));
                 }
             }
             shaped_at = clock();
@@ -253,18 +265,18 @@ impl Places {
 }
 
 /// The declared name of a member: `ribs` of `ribs[2]`.
-fn base_of(name: &str) -> &str {
+pub(super) fn base_of(name: &str) -> &str {
     name.split('[').next().unwrap_or_default()
 }
 
 /// Which things a name of the script stands for: members of a family stand by themselves or, where there are many, as one.
-struct ThingNames {
+pub(super) struct ThingNames {
     all: BTreeSet<String>,
     members: BTreeMap<String, Vec<String>>,
 }
 
 impl ThingNames {
-    fn new(things: &[Thing]) -> Self {
+    pub fn new(things: &[Thing]) -> Self {
         let mut members: BTreeMap<String, Vec<String>> = BTreeMap::new();
         for thing in things.iter().filter(|thing| thing.name.contains('[')) {
             members.entry(base_of(&thing.name).to_owned()).or_default().push(thing.name.clone());
@@ -273,7 +285,7 @@ impl ThingNames {
     }
 
     /// The things of these names, each once.
-    fn all(&self, names: &[String]) -> Vec<String> {
+    pub fn all(&self, names: &[String]) -> Vec<String> {
         let mut seen = BTreeSet::new();
         let of = |name: &String| -> Vec<String> {
             match self.members.get(name) {

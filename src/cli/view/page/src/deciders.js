@@ -4,8 +4,8 @@ export const NOT_KNOWN = 'not known';
 
 /** The number of the decider at a node, or −1 where nothing is known of its size. */
 export function deciderAt({ header, arrays }, node) {
-  const { asked, decided } = arrays;
-  if (!decided || (asked && !Number.isFinite(asked[node]))) return -1;
+  const { decided } = arrays;
+  if (!decided) return -1;
   const name = header.deciders?.[decided[node]] ?? NOT_KNOWN;
   return name === NOT_KNOWN ? -1 : decided[node];
 }
@@ -25,7 +25,7 @@ export function decidersOf(buffer) {
       if (own[k] < 0) continue;
       let votes = 0;
       for (let j = 0; j < corners; j++) if (own[j] === own[k]) votes++;
-      const length = asked ? asked[ids[at + k]] : 0;
+      const length = asked && Number.isFinite(asked[ids[at + k]]) ? asked[ids[at + k]] : Infinity;
       if (votes > most || (votes === most && length < least)) [best, most, least] = [own[k], votes, length];
     }
     return best;
