@@ -48,7 +48,7 @@ fn every_mesh_of_every_model_is_sound() {
     };
     found.retain(|f| !coarse(f));
     assert_eq!(found, Vec::<String>::new());
-    let least = if is_long() { [50, 100, 3_000, 20, 5] } else { [12, 25, 750, 5, 1] };
+    let least = if is_long() { [50, 100, 3_000, 20, 5] } else { [12, 25, 750, 3, 1] };
     let enough = tally.iter().zip(least).all(|(n, least)| *n >= least);
     assert!(enough, "too little was looked at: {tally:?}");
 }

@@ -7,6 +7,7 @@ use crate::base::origin::Origin;
 use crate::lang::diag::diagnostic::FileId;
 use crate::lang::diag::span::Span;
 use crate::lang::eval::context::Cx;
+use crate::lang::eval::module::State;
 use crate::lang::eval::stages::each_member;
 use crate::lang::run::symbols::{Condition, Symbol};
 use crate::lang::syntax::ast::{Allowed, Declaration, DeclarationKind, Expr, ExprId, Keyword};
@@ -25,6 +26,17 @@ const DRAWN: &[Keyword] = &[
     Keyword::Import,
 ];
 
+/// Params, and what a script draws without its meshes.
+const SHAPES: &[Keyword] = &[
+    Keyword::Use,
+    Keyword::Param,
+    Keyword::Import,
+    Keyword::Point,
+    Keyword::Curve,
+    Keyword::ModelingCurve,
+    Keyword::Surface,
+    Keyword::Shell,
+];
 /// A stretch of one of the run's files.
 pub type Stretch = (FileId, Span);
 
@@ -61,6 +73,18 @@ pub struct DeclaredParam {
 }
 
 impl Cx<'_> {
+    /// Evaluates the params, geometry and shells of the main script.
+    pub(super) fn evaluate_shapes(&mut self) {
+        for i in SHAPES.iter().flat_map(|keyword| self.heads(ModuleId::MAIN, *keyword)).collect::<Vec<u32>>() {
+            if self.job.go_on().is_err() {
+                return;
+            }
+            if matches!(self.machine.at(ModuleId::MAIN).states[i as usize], State::Waiting) {
+                self.ensure_all(ModuleId::MAIN, i);
+            }
+        }
+    }
+
     /// What the main script declares and has a value, in order of writing; `symbols` are all its declarations.
     pub fn declared_values(&self, symbols: &[Symbol]) -> Vec<DeclaredValue> {
         let Some(module) = self.machine.modules.first() else { return Vec::new() };

@@ -20,17 +20,6 @@ use crate::lang::values::types::Ty;
 use crate::lang::values::units;
 use crate::lang::values::value::{Dim, ModuleId, Value};
 
-/// Params, and what a script draws without its meshes.
-const SHAPES: &[Keyword] = &[
-    Keyword::Use,
-    Keyword::Param,
-    Keyword::Import,
-    Keyword::Point,
-    Keyword::Curve,
-    Keyword::ModelingCurve,
-    Keyword::Surface,
-    Keyword::Shell,
-];
 /// Names listed in a note about what was not built.
 const NAMES_LISTED: usize = 12;
 /// The tolerance of a model without points, in millimetres.
@@ -87,22 +76,10 @@ impl Cx<'_> {
             }
         }
         if let Some(shaped) = shaped {
-            self.pass_shapes();
+            self.evaluate_shapes();
             shaped(self);
         }
         self.pass();
-    }
-
-    /// Evaluates the geometry and the shells of the main script.
-    fn pass_shapes(&mut self) {
-        for i in SHAPES.iter().flat_map(|keyword| self.heads(ModuleId::MAIN, *keyword)).collect::<Vec<u32>>() {
-            if self.job.go_on().is_err() {
-                return;
-            }
-            if matches!(self.machine.at(ModuleId::MAIN).states[i as usize], State::Waiting) {
-                self.ensure_all(ModuleId::MAIN, i);
-            }
-        }
     }
 
     /// Evaluates what waits, in all modules; more modules may turn up on the way.

@@ -55,12 +55,16 @@ impl MeshOptimizer<'_> {
         let mut better = 0;
         for round in 1..=budget.max_rounds {
             let before = better;
-            for t in self.bad_triangles() {
+            let mut bad = self.bad_triangles();
+            if !budget.by_shape {
+                bad.truncate(left);
+            }
+            for t in bad {
                 job.go_on()?;
                 if left == 0 {
                     break;
                 }
-                if !self.is_bad(t) || !self.is_unsearched(t) {
+                if !self.is_bad(t) || budget.by_shape && !self.is_unsearched(t) {
                     continue;
                 }
                 left -= 1;
