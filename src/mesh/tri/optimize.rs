@@ -206,7 +206,7 @@ impl<'a> MeshOptimizer<'a> {
             self.smooth(self.settings.smoothing_rounds.min(4));
             self.flip_all();
         }
-        self.repair_last(job)
+        self.repair_last(SearchBudget::FEW, job)
     }
 
     /// The mean factor on wanted lengths of some nodes.

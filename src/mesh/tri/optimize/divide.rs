@@ -29,18 +29,21 @@ impl<'a> MeshOptimizer<'a> {
     /// exceed a limit have to be divided again; when all keep their limits, the others are repaired within the limits, and the worst are searched.
     pub fn divide(&mut self, limit_check: &'a dyn LimitCheck, mut bad: Vec<u32>, job: &Job) -> Result<Vec<u32>> {
         let (wanted, mut settled) = (self.settings.min_quality, false);
+        let mut unsearched = None;
         for round in 0..DIVISION.max_rounds {
             bad = self.broken(limit_check, &bad);
             let per_triangle = limit_check.is_per_triangle();
-            // Without bounds a face that needed no division is repaired already.
-            if bad.is_empty() && (per_triangle || round > 0) && !settled && self.settings.smoothing_rounds > 0 {
+            let is_searched = per_triangle || self.settings.searches.by_shape;
+            if bad.is_empty() && is_searched && !settled && self.settings.smoothing_rounds > 0 {
                 settled = true;
                 self.settings.min_quality = wanted;
                 if per_triangle {
                     self.limit_check = Some(limit_check);
                     self.changed = Pending::all(self.triangulation.p.len());
+                } else {
+                    unsearched = Some((self.triangulation.clone(), self.shape_quality()));
                 }
-                self.repair_last(job)?;
+                self.repair_last(self.settings.searches, job)?;
                 bad = self.broken(limit_check, &bad);
             }
             if bad.is_empty() || !self.are_few(&bad) {
@@ -69,6 +72,12 @@ impl<'a> MeshOptimizer<'a> {
             }
             self.repair();
             job.go_on()?;
+        }
+        if let Some((triangulation, quality)) = unsearched
+            && (!bad.is_empty() || !self.shape_quality().is_no_worse_than(&quality))
+        {
+            // What a search made better was lost when its long sides were divided.
+            (self.triangulation, bad) = (triangulation, Vec::new());
         }
         Ok(bad)
     }

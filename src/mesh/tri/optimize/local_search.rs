@@ -6,8 +6,8 @@ use glam::{DVec2, DVec3};
 use crate::base::fault::Result;
 use crate::base::job::{self, Job};
 use crate::base::triangulate_points::NO_TRIANGLE;
-use crate::mesh::tri::optimize::MeshOptimizer;
 use crate::mesh::tri::optimize::repair::{PatchPlan, PlanThreshold};
+use crate::mesh::tri::optimize::{MeshOptimizer, SearchBudget};
 use crate::mesh::tri::optimize_settings::LOCAL_SEARCH;
 use crate::mesh::tri::shape::Star;
 use crate::mesh::tri::triangulation::Patch;
@@ -31,6 +31,27 @@ struct LocalQuality {
     penalty: f64,
 }
 
+/// How well some triangles are shaped, whatever the lengths of their sides.
+#[derive(Clone, Copy)]
+pub(super) struct ShapeQuality {
+    least: f64,
+    /// Sum of the eighth powers of their distances from quality 1.
+    penalty: f64,
+}
+
+impl ShapeQuality {
+    /// Whether neither the worst is worse nor all together.
+    pub(super) fn is_no_worse_than(&self, other: &Self) -> bool {
+        self.least >= other.least && self.penalty <= other.penalty
+    }
+}
+
+/// The eighth power of the distance from quality 1.
+fn penalty_of(quality: f64) -> f64 {
+    let short = (1.0 - quality) * (1.0 - quality);
+    short * short * short * short
+}
+
 /// The penalty after a change and sweeps, and the free nodes then.
 struct Swept {
     penalty: f64,
@@ -39,23 +60,31 @@ struct Swept {
 
 impl MeshOptimizer<'_> {
     /// Repairs bad triangles, and then searches round the worst that are left.
-    pub fn repair_last(&mut self, job: &Job) -> Result<()> {
+    pub fn repair_last(&mut self, budget: SearchBudget, job: &Job) -> Result<()> {
         self.repair();
-        if self.search_worst(job)? > 0 {
+        if self.search_worst(budget, job)? > 0 {
             self.repair();
         }
         Ok(())
     }
 
+    /// How well all triangles are shaped.
+    pub(super) fn shape_quality(&self) -> ShapeQuality {
+        let all = (0..self.triangulation.tri.len() as u32).filter(|t| self.triangulation.alive(*t));
+        all.fold(ShapeQuality { least: f64::INFINITY, penalty: 0.0 }, |quality, t| {
+            let own = self.triangulation.shape(self.triangulation.tri[t as usize]);
+            ShapeQuality { least: quality.least.min(own), penalty: quality.penalty + penalty_of(own) }
+        })
+    }
+
     /// Searches round the worst triangles below the wanted quality, the worst first, and again where a search changed something; how many
     /// got better.
-    fn search_worst(&mut self, job: &Job) -> Result<usize> {
-        let budget = self.settings.searches;
+    fn search_worst(&mut self, budget: SearchBudget, job: &Job) -> Result<usize> {
         let mut left = budget.of(self.triangulation.tri.len());
         let mut better = 0;
         for round in 1..=budget.max_rounds {
             let before = better;
-            let mut bad = self.bad_triangles();
+            let mut bad = self.bad_triangles(budget);
             if !budget.by_shape {
                 bad.truncate(left);
             }
@@ -64,11 +93,11 @@ impl MeshOptimizer<'_> {
                 if left == 0 {
                     break;
                 }
-                if !self.is_bad(t) || budget.by_shape && !self.is_unsearched(t) {
+                if !self.is_bad(t, budget) || budget.by_shape && !self.is_unsearched(t) {
                     continue;
                 }
                 left -= 1;
-                if self.try_all(t) {
+                if self.try_all(t, budget) {
                     better += 1;
                 } else {
                     self.failed_searches.give_up(t);
@@ -83,19 +112,19 @@ impl MeshOptimizer<'_> {
     }
 
     /// The quality by which triangles are searched.
-    fn searched_quality(&self, t: u32) -> f64 {
+    fn searched_quality(&self, t: u32, budget: SearchBudget) -> f64 {
         let corners = self.triangulation.tri[t as usize];
-        if self.settings.searches.by_shape { self.triangulation.shape(corners) } else { self.penalized_quality(t) }
+        if budget.by_shape { self.triangulation.shape(corners) } else { self.penalized_quality(t) }
     }
 
-    fn is_bad(&self, t: u32) -> bool {
-        self.triangulation.alive(t) && self.searched_quality(t) < self.settings.min_quality
+    fn is_bad(&self, t: u32, budget: SearchBudget) -> bool {
+        self.triangulation.alive(t) && self.searched_quality(t, budget) < self.settings.min_quality
     }
 
     /// Triangles below the wanted quality, the worst first.
-    fn bad_triangles(&self) -> Vec<u32> {
-        let all = (0..self.triangulation.tri.len() as u32).filter(|t| self.is_bad(*t));
-        let mut bad: Vec<(f64, u32)> = all.map(|t| (self.searched_quality(t), t)).collect();
+    fn bad_triangles(&self, budget: SearchBudget) -> Vec<u32> {
+        let all = (0..self.triangulation.tri.len() as u32).filter(|t| self.is_bad(*t, budget));
+        let mut bad: Vec<(f64, u32)> = all.map(|t| (self.searched_quality(t, budget), t)).collect();
         bad.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         bad.into_iter().map(|(_, t)| t).collect()
     }
@@ -107,7 +136,7 @@ impl MeshOptimizer<'_> {
         self.failed_searches.is_new(self.triangulation.nodes_of(&near).into_iter(), since)
     }
 
-    fn try_all(&mut self, t: u32) -> bool {
+    fn try_all(&mut self, t: u32, budget: SearchBudget) -> bool {
         let corners = self.triangulation.tri[t as usize];
         let near = self.rings_of(&corners);
         let nodes = self.triangulation.nodes_of(&near);
@@ -120,7 +149,7 @@ impl MeshOptimizer<'_> {
             job::poll();
             let (nodes, _) = self.apply(change, &nodes);
             let most = best.as_ref().map_or(before.penalty * LOCAL_SEARCH.max_penalty_ratio, |best| best.1.penalty);
-            if let Some(swept) = self.sweep(&nodes, before, most) {
+            if let Some(swept) = self.sweep(&nodes, before, most, budget.by_shape) {
                 best = Some((k, swept));
             }
             self.triangulation.put_back(&kept);
@@ -141,12 +170,11 @@ impl MeshOptimizer<'_> {
     fn local_quality(&self, some: &[u32]) -> LocalQuality {
         some.iter().fold(LocalQuality { least: f64::INFINITY, least_shape: f64::INFINITY, penalty: 0.0 }, |quality, t| {
             let own = self.penalized_quality(*t);
-            let short = (1.0 - own) * (1.0 - own);
             let shape = self.triangulation.shape(self.triangulation.tri[*t as usize]);
             LocalQuality {
                 least: quality.least.min(own),
                 least_shape: quality.least_shape.min(shape),
-                penalty: quality.penalty + short * short * short * short,
+                penalty: quality.penalty + penalty_of(own),
             }
         })
     }
@@ -197,12 +225,12 @@ impl MeshOptimizer<'_> {
 
     /// Moves some nodes together in sweeps; the least penalty and where they were then, where that is less than
     /// `most`, the worst triangle is no worse than before, and all keep the limits.
-    fn sweep(&mut self, nodes: &[u32], before: LocalQuality, most: f64) -> Option<Swept> {
+    fn sweep(&mut self, nodes: &[u32], before: LocalQuality, most: f64, by_shape: bool) -> Option<Swept> {
         let all = self.rings_of(nodes);
         let (mut best, mut most): (Option<Swept>, f64) = (None, most);
         for round in 0..=LOCAL_SEARCH.max_sweeps {
             let now = self.local_quality(&all);
-            let is_shaped = !self.settings.searches.by_shape || now.least_shape >= before.least_shape;
+            let is_shaped = !by_shape || now.least_shape >= before.least_shape;
             let is_no_worse = now.least >= before.least && is_shaped;
             if now.penalty < most && is_no_worse && all.iter().all(|t| self.triangulation.chart_area(*t) > 0.0) {
                 let free = nodes.iter().filter(|n| self.triangulation.is_free(**n));
