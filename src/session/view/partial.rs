@@ -1,5 +1,7 @@
 //! The frame of a model whose shapes are evaluated and the rest is not yet: what can be seen early is shown early.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use super::frame::{Frame, Param, Place, Source, Thing, VERSION};
 use super::things::Drawn;
 use super::viewer::{ThingNames, View, Wanted, base_of, corners_of};
@@ -27,17 +29,17 @@ pub(super) fn is_worth_it(last: &View, rest: f64) -> bool {
 pub(super) fn view(wanted: &Wanted, early: Early, last: &View) -> View {
     let Early { model, units, sources, params, drawn, declared } = early;
     let Drawn { mut things, mut buffers, chord_error } = drawn;
+    let mut known: BTreeMap<&str, Vec<&Thing>> = BTreeMap::new();
+    last.frame.things.iter().for_each(|thing| known.entry(base_of(&thing.name)).or_default().push(thing));
     for thing in &mut things {
-        let before = last.frame.things.iter().find(|before| before.name == thing.name && before.buffers == thing.buffers);
+        let alike = known.get(base_of(&thing.name)).map_or(&[][..], |alike| alike);
+        let before = alike.iter().find(|before| before.name == thing.name && before.buffers == thing.buffers);
         thing.facts = before.map(|before| before.facts.clone()).unwrap_or_default();
     }
-    for (name, kind, line) in declared {
-        let is_of = |thing: &&Thing| base_of(&thing.name) == name;
-        if things.iter().any(|thing| is_of(&thing)) {
-            continue;
-        }
+    let made: BTreeSet<String> = things.iter().map(|thing| base_of(&thing.name).to_owned()).collect();
+    for (name, kind, line) in declared.into_iter().filter(|(name, ..)| !made.contains(name)) {
         let chain: Vec<Place> = line.into_iter().collect();
-        let before: Vec<Thing> = last.frame.things.iter().filter(is_of).cloned().collect();
+        let before: Vec<Thing> = known.get(&*name).into_iter().flatten().map(|thing| (*thing).clone()).collect();
         if let (true, Some(kind)) = (before.is_empty(), kind) {
             things.push(Thing { name, kind, chain: chain.clone(), pending: true, ..Thing::default() });
         }
