@@ -26,7 +26,7 @@ impl Revision {
     pub fn of_golden(script: &Path) -> Result<Self, String> {
         let golden = script.with_extension("golden");
         let name = golden.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let commit = git(script, &["--literal-pathspecs", "log", "-1", "--diff-filter=d", "--format=%H", "--", &name])?;
+        let commit = git(script, &["--literal-pathspecs", "log", "-1", "--diff-filter=AM", "--format=%H", "--", &name])?;
         match commit.trim() {
             "" => Err(format!("no commit holds {name}; compare with a revision, such as HEAD")),
             commit => Ok(Self { commit: commit.to_owned() }),
