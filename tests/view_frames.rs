@@ -305,7 +305,8 @@ fn meshes_tell_what_decided_their_sizes() {
             seen[1] += 1;
         }
         if p.x == 4.0 && p.y > 3.2 && p.y < 3.9 {
-            assert!(word == "the size" && close(asked, 0.5), "{p} {word} {asked}");
+            // Nodes on the border of a free face are to be nearer to each other than sides may be long.
+            assert!(word == "the size" && close(asked, 0.4), "{p} {word} {asked}");
             seen[2] += 1;
         }
     }

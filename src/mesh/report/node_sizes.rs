@@ -88,13 +88,9 @@ fn of_segment(
     }
 }
 
-/// What is asked between two nodes, at a share of the way from the first to the second.
-fn between(sizes: &NodeSizes, ends: [Option<u32>; 2], share: f32) -> Option<Asked> {
-    let of = |id: u32| Some((sizes.lengths[id as usize], sizes.of[id as usize])).filter(|asked| !asked.0.is_nan());
-    match ends.map(|end| end.and_then(of)) {
-        [Some(a), Some(b)] => Some((a.0 + (b.0 - a.0) * share, if a.0 <= b.0 { a.1 } else { b.1 })),
-        [a, b] => a.or(b),
-    }
+/// What is asked at a node.
+fn asked_at(sizes: &NodeSizes, id: u32) -> Option<Asked> {
+    Some((sizes.lengths[id as usize], sizes.of[id as usize])).filter(|asked| !asked.0.is_nan())
 }
 
 /// The shortest of what is asked.
@@ -104,13 +100,15 @@ fn shortest(asked: impl IntoIterator<Item = Option<Asked>>) -> Option<Asked> {
 
 fn of_grid(ids: &GridIds, sizes: &mut NodeSizes) {
     let (nu, nv) = ids.size();
-    let end = |side: usize, k: usize| (!ids.poles[side]).then(|| ids.sides[side][k]);
-    let share = |k: usize, n: usize| k as f32 / n as f32;
-    let rows: Vec<Option<Asked>> = (0..=nv).map(|j| between(sizes, [end(3, j), end(1, j)], 0.5)).collect();
+    let end = |sizes: &NodeSizes, side: usize, k: usize| {
+        let id = (!ids.poles[side]).then(|| ids.sides[side][k])?;
+        asked_at(sizes, id)
+    };
+    let rows: Vec<Option<Asked>> = (0..=nv).map(|j| shortest([end(sizes, 3, j), end(sizes, 1, j)])).collect();
+    let columns: Vec<Option<Asked>> = (0..=nu).map(|i| shortest([end(sizes, 0, i), end(sizes, 2, i)])).collect();
     for (j, row) in rows.into_iter().enumerate().take(nv).skip(1) {
-        for i in 1..nu {
-            let along_v = between(sizes, [end(0, i), end(2, i)], share(j, nv));
-            if let Some((length, word)) = shortest([row, along_v]) {
+        for (i, column) in columns.iter().enumerate().take(nu).skip(1) {
+            if let Some((length, word)) = shortest([row, *column]) {
                 sizes.lower(ids.node(i, j) as usize, word, length);
             }
         }
@@ -122,7 +120,7 @@ fn of_lattice(ids: &LatticeIds, sizes: &mut NodeSizes) {
     let inner: Vec<(usize, usize)> = LatticeIds::inner(n).collect();
     for (i, j) in inner {
         let ends = [ids.sides[0][i], ids.sides[1][j], ids.sides[2][j]];
-        if let Some((length, word)) = shortest(ends.map(|end| between(sizes, [Some(end), None], 0.0))) {
+        if let Some((length, word)) = shortest(ends.map(|end| asked_at(sizes, end))) {
             sizes.lower(ids.node(i, j) as usize, word, length);
         }
     }
@@ -131,7 +129,7 @@ fn of_lattice(ids: &LatticeIds, sizes: &mut NodeSizes) {
 /// Three grids that meet inside a triangle: no row leads from side to side, so all inner nodes have what is asked for most of the border.
 fn of_blocks(blocks: &Blocks, ids: &[u32], sizes: &mut NodeSizes) {
     let border = blocks.sides.iter().flatten().map(|place| ids[*place as usize]);
-    let mut asked: Vec<Asked> = border.filter_map(|id| between(sizes, [Some(id), None], 0.0)).collect();
+    let mut asked: Vec<Asked> = border.filter_map(|id| asked_at(sizes, id)).collect();
     asked.sort_by(|a, b| a.0.total_cmp(&b.0));
     if let Some((length, word)) = asked.get(asked.len() / 2).copied() {
         ids[..blocks.inner].iter().for_each(|id| sizes.lower(*id as usize, word, length));
