@@ -193,7 +193,7 @@ fn what_cannot_be_made_stays_as_it_was_and_is_marked() {
     // A text that is no script keeps everything that its declarations would have bound.
     let broken = show(&mut viewer, 3, &ROOF.replace("surface roof = coons(", "surface roof = coons(("));
     assert!(thing(&broken, "roof").stale, "{:?}", names(&broken));
-    // What is deleted goes; what is mended is drawn anew.
+    // What is deleted goes; what is repaired is drawn anew.
     let less = show(&mut viewer, 4, &ROOF.replace("surface wall = ruled(foot, line((0, 0, -1), (4, 0, -1)))\n", ""));
     assert!(!names(&less).contains(&"wall") && !less.frame.stale && thing(&less, "roof").buffers == thing(&whole, "roof").buffers);
 }

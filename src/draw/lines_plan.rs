@@ -201,9 +201,9 @@ impl LinesPlan {
         }
         let (ratio, times) = found.unwrap_or((first, 1.0));
         let (pixels, column) = left_column(ratio);
-        let told =
+        let written =
             |ratio: f64| if ratio >= 1.0 { format!("1 : {}", number(ratio, 0.5)) } else { format!("{} : 1", number(1.0 / ratio, 0.5)) };
-        let scale = if times > 1.0 { format!("{}, body plan {}", told(ratio), told(ratio / times)) } else { told(ratio) };
+        let scale = if times > 1.0 { format!("{}, body plan {}", written(ratio), written(ratio / times)) } else { written(ratio) };
         let body_pixels = pixels * times;
         let used = DVec2::new(column.x + 2.0 * half * body_pixels, column.y.max(extent.z * body_pixels));
         let free = (room - used).max(DVec2::ZERO) * 0.5;
@@ -231,17 +231,17 @@ impl LinesPlan {
     /// Length, beam and depth.
     fn dimensions(&self, views: &Views, items: &mut Vec<Item>) {
         let (size, extent) = (views.size, self.high - self.low);
-        let told = |x: f64| format!("{} {}", number(x, 0.001 * extent.max_element()), self.unit);
+        let written = |x: f64| format!("{} {}", number(x, 0.001 * extent.max_element()), self.unit);
         let right = views.left + extent.x * views.pixels;
         let y = views.base + 3.6 * size;
-        items.extend(dimension(DVec2::new(views.left, y), DVec2::new(right, y), size, &format!("length {}", told(extent.x))));
+        items.extend(dimension(DVec2::new(views.left, y), DVec2::new(right, y), size, &format!("length {}", written(extent.x))));
         let top = views.base - extent.z * views.pixels;
         let y = top - 2.0 * size;
         let (left, reach) = (self.reach.0 * views.body_pixels, self.reach.1 * views.body_pixels);
         let (a, b) = (DVec2::new(views.middle - left, y), DVec2::new(views.middle + reach, y));
-        items.extend(dimension(a, b, size, &format!("beam {}", told(self.reach.0 + self.reach.1))));
+        items.extend(dimension(a, b, size, &format!("beam {}", written(self.reach.0 + self.reach.1))));
         let x = views.middle + reach + 1.6 * size;
-        let depth = dimension(DVec2::new(x, top), DVec2::new(x, views.body_base), size, &told(extent.z));
+        let depth = dimension(DVec2::new(x, top), DVec2::new(x, views.body_base), size, &written(extent.z));
         items.extend(depth);
         let ends = [
             (DVec2::new(views.left, views.base), DVec2::new(views.left, views.base + 4.0 * size)),
@@ -257,11 +257,11 @@ impl LinesPlan {
     /// The title block in the lower right corner.
     fn block(&self, frame: &Rect, size: f64, title: &str, scale: &str, items: &mut Vec<Item>) {
         let extent = self.high - self.low;
-        let told = |x: f64| number(x, 0.001 * extent.max_element());
+        let written = |x: f64| number(x, 0.001 * extent.max_element());
         let cells = [
             ("scale", scale.to_owned()),
             ("unit", self.unit.clone()),
-            ("length × beam × depth", format!("{} × {} × {}", told(extent.x), told(self.reach.0 + self.reach.1), told(extent.z))),
+            ("length × beam × depth", format!("{} × {} × {}", written(extent.x), written(self.reach.0 + self.reach.1), written(extent.z))),
         ];
         let width = |text: &str| font::width(text, size) + 1.6 * size;
         let widths: Vec<f64> = cells.iter().map(|(head, text)| width(text).max(width(head) * 0.8)).collect();

@@ -225,7 +225,7 @@ fn evaluate(shared: &Arc<Shared>, mut model: Box<dyn Model>) {
                 }
                 evaluated.frame
             }
-            Err(_) => Some(told_frame(shared, running.number, ("error", "bug"), BUG)),
+            Err(_) => Some(message_frame(shared, running.number, ("error", "bug"), BUG)),
         };
         if frame.is_some_and(|frame| shared.frames.publish(running.number, frame)) {
             shared.events.frame(running.number);
@@ -241,17 +241,19 @@ fn evaluate(shared: &Arc<Shared>, mut model: Box<dyn Model>) {
 fn end_partial(shared: &Shared) {
     if shared.frames.is_partial() {
         let number = shared.frames.number() + 1;
-        if shared.frames.publish(number, told_frame(shared, number, ("note", "stopped"), STOPPED)) {
+        if shared.frames.publish(number, message_frame(shared, number, ("note", "stopped"), STOPPED)) {
             shared.events.frame(number);
         }
     }
 }
 
+/// Message of an evaluation that ended in a bug.
 const BUG: &str = "a bug in loft stopped this evaluation; please report it with this script";
+/// Message of an evaluation that was stopped when its shapes were shown.
 const STOPPED: &str = "the evaluation was stopped; the next change of the script starts it again";
 
-/// What the page showed before, with one thing to be told: its severity and code, and its words.
-fn told_frame(shared: &Shared, number: u64, (severity, code): (&str, &str), message: &str) -> Frame {
+/// What the page showed before, with one message: its severity and code, and its text.
+fn message_frame(shared: &Shared, number: u64, (severity, code): (&str, &str), message: &str) -> Frame {
     let (before, buffers) = shared.frames.newest_frame().unwrap_or_default();
     let mut frame: Value = serde_json::from_slice(&before).unwrap_or_else(|_| empty_frame(&shared.name));
     frame["number"] = number.into();

@@ -123,18 +123,20 @@ impl ShownModel {
 
     /// The model with all files that it reads as they were then; those of no repository, and what is no text, as they are.
     fn at_revision(&self, revision: &Revision, wanted: &Wanted, job: &Job) -> Result<Option<View>, Bug> {
-        let mut texts: BTreeMap<PathBuf, Option<Arc<str>>> = BTreeMap::new();
+        let texts_of = |files: &mut dyn Iterator<Item = &PathBuf>| -> BTreeMap<PathBuf, Option<Arc<str>>> {
+            files.map(|file| (file.clone(), revision.text(file).ok().map(Arc::from))).collect()
+        };
         // Most files of then are those of today.
-        let mut files = self.viewer.files().to_vec();
+        let mut texts = texts_of(&mut self.viewer.files().iter());
         loop {
-            texts.extend(files.into_iter().map(|file| (file.clone(), revision.text(&file).ok().map(Arc::from))));
             let mut viewer = Viewer::new(&self.name, Some(&self.script), &self.allow, self.clock.clone());
             viewer.set_unsaved(texts.iter().filter_map(|(file, text)| Some((file.clone(), text.clone()?))).collect());
             let view = viewer.show(wanted, job)?;
-            files = viewer.files().iter().filter(|file| !texts.contains_key(*file)).cloned().collect();
-            if view.is_none() || files.is_empty() {
+            let more = texts_of(&mut viewer.files().iter().filter(|file| !texts.contains_key(*file)));
+            if view.is_none() || more.values().all(Option::is_none) {
                 return Ok(view);
             }
+            texts.extend(more);
         }
     }
 }

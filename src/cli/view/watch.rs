@@ -28,7 +28,7 @@ pub struct Watch {
     /// A file changed before it was watched.
     missed: bool,
     /// The script has been looked for in vain.
-    told_gone: bool,
+    announced_gone: bool,
     started: Instant,
 }
 
@@ -49,7 +49,7 @@ impl Watch {
     /// Watches a script; the first rounds tell its text, or that it is not there.
     pub fn new(script: &Path) -> Self {
         let script = FileState::unknown(script);
-        Self { script, files: Vec::new(), missed: false, told_gone: false, started: Instant::now() }
+        Self { script, files: Vec::new(), missed: false, announced_gone: false, started: Instant::now() }
     }
 
     /// Watches these files besides the script from now on. One that changed after `since`, when the model began to read, counts as
@@ -81,14 +81,14 @@ impl Watch {
             Look::Same => {}
             Look::Unsettled => rest = SHORT_REST,
             Look::Changed(text) => {
-                self.told_gone = text.is_none();
+                self.announced_gone = text.is_none();
                 news.gone = text.is_none();
                 news.text = text;
             }
         }
         // There was none to begin with.
-        if !self.script.is_there() && !self.told_gone && now.duration_since(self.started) > LONGEST_REST {
-            self.told_gone = true;
+        if !self.script.is_there() && !self.announced_gone && now.duration_since(self.started) > LONGEST_REST {
+            self.announced_gone = true;
             news.gone = true;
         }
         for file in &mut self.files {

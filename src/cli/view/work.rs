@@ -14,8 +14,8 @@ use super::model::{Compare, Evaluation, Request};
 /// How long an evaluation may go on when a param moved.
 const SHORT: Duration = Duration::from_millis(300);
 
-/// How long an evaluation runs before the pages are told.
-const UNTOLD: Duration = Duration::from_millis(100);
+/// How long an evaluation runs before its progress is announced to the pages.
+const ANNOUNCED_AFTER: Duration = Duration::from_millis(100);
 
 /// How long the file has to change after a default was written into it.
 const WRITTEN: Duration = Duration::from_millis(100);
@@ -55,7 +55,7 @@ pub struct Running {
     /// What its model sees of it.
     pub evaluation: Evaluation,
     started: Instant,
-    told: AtomicBool,
+    announced: AtomicBool,
 }
 
 impl Work {
@@ -153,7 +153,7 @@ impl Work {
         // Its partial frame has the number before.
         state.wanted.number += 2;
         let (number, started) = (state.wanted.number, Instant::now());
-        let running = Arc::new(Running { number, evaluation: Evaluation::default(), started, told: AtomicBool::new(false) });
+        let running = Arc::new(Running { number, evaluation: Evaluation::default(), started, announced: AtomicBool::new(false) });
         state.running = Some(running.clone());
         Some((state.wanted.clone(), running))
     }
@@ -162,7 +162,7 @@ impl Work {
     pub fn finished(&self, tell: impl FnOnce(&Value)) {
         let _one_after_the_other = self.telling.lock().unwrap_or_else(PoisonError::into_inner);
         let Some(running) = self.state().running.take() else { return };
-        if running.told.load(Ordering::Relaxed) {
+        if running.announced.load(Ordering::Relaxed) {
             tell(&json!({ "number": running.number, "phase": null }));
         }
     }
@@ -180,15 +180,15 @@ impl Work {
         }
     }
 
-    /// Calls `tell` with how far the running evaluation is, where it runs long enough to be told. To be called ten times a second at most.
+    /// Calls `tell` with how far the running evaluation is, where it runs long enough to be announced. To be called ten times a second at most.
     pub fn progress(&self, tell: impl FnOnce(&Value)) {
         let _one_after_the_other = self.telling.lock().unwrap_or_else(PoisonError::into_inner);
         let Some(running) = self.state().running.clone() else { return };
         let seconds = running.started.elapsed();
-        if seconds < UNTOLD {
+        if seconds < ANNOUNCED_AFTER {
             return;
         }
-        running.told.store(true, Ordering::Relaxed);
+        running.announced.store(true, Ordering::Relaxed);
         let progress = running.evaluation.progress();
         let phase = if progress.phase.is_empty() { "evaluating" } else { &progress.phase };
         let seconds = (seconds.as_secs_f64() * 100.0).round() / 100.0;

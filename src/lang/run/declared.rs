@@ -37,6 +37,7 @@ const SHAPES: &[Keyword] = &[
     Keyword::Surface,
     Keyword::Shell,
 ];
+
 /// A stretch of one of the run's files.
 pub type Stretch = (FileId, Span);
 

@@ -57,7 +57,7 @@ impl NodeSizes {
         }
     }
 
-    /// Adds those of the nodes of another mesh, `more`, after those of the `nodes` here; nodes of which nothing is told are unknown.
+    /// Adds those of the nodes of another mesh, `more`, after those of the `nodes` here; nodes without an entry are not known.
     pub fn append(&mut self, nodes: usize, other: &Self, more: usize) {
         let place_of: Vec<u32> = other.words.iter().map(|word| self.word(word)).collect();
         self.of.resize(nodes, 0);

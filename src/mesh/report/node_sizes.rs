@@ -12,7 +12,6 @@ use crate::mesh::mapped::grid::GridIds;
 use crate::mesh::mapped::trilateral::{Blocks, LatticeIds};
 use crate::mesh::report::explain::{Because, Explanation};
 use crate::mesh::report::reasons;
-use crate::mesh::request::decider::Why;
 use crate::mesh::request::input::Input;
 use crate::mesh::size::sizing::Sizing;
 
@@ -77,8 +76,6 @@ fn of_segment(
     for (k, id) in nodes.of_segment(layout, segment, false).into_iter().enumerate() {
         let varied = spacing.and_then(|spacing| Some((spacing.length_at(fractions[k]), spacing.why_at(fractions[k])?)));
         let (asked, word) = match (varied, because) {
-            // Nodes of free faces are nearer to each other than sides may be long.
-            (Some((_, Why::Size)), _) => (decision.size.0, sizes.word(&reasons::cause(input, Why::Size))),
             (Some((asked, why)), _) => (asked, sizes.word(&reasons::cause(input, why))),
             (None, Because::Count(_)) => (step(k), word),
             (None, Because::Limit) => (length / f64::from(decision.least.max(1)), word),

@@ -44,9 +44,7 @@ pub(super) fn view(wanted: &Wanted, early: Early, last: &View) -> View {
             things.push(Thing { name, kind, chain: chain.clone(), pending: true, ..Thing::default() });
         }
         for thing in before {
-            for row in &thing.buffers {
-                buffers.extend(last.buffers.get(&row.key).map(|buffer| (row.key.clone(), buffer.clone())));
-            }
+            buffers.extend(last.buffers_of(&thing));
             things.push(Thing { stale: true, pending: true, unmade: None, chain: chain.clone(), ..thing });
         }
     }

@@ -49,6 +49,13 @@ pub struct View {
     pub buffers: BTreeMap<String, Buffer>,
 }
 
+impl View {
+    /// The buffers of a thing, by key.
+    pub(super) fn buffers_of(&self, thing: &Thing) -> Vec<(String, Buffer)> {
+        thing.buffers.iter().filter_map(|row| Some((row.key.clone(), self.buffers.get(&row.key)?.clone()))).collect()
+    }
+}
+
 /// A script and what its frames left.
 pub struct Viewer {
     live: Live,
@@ -187,9 +194,7 @@ impl Viewer {
         let lost: Vec<Thing> = old.frame.things.iter().filter(is_lost).cloned().collect();
         let stale = !lost.is_empty();
         for thing in lost {
-            for row in &thing.buffers {
-                buffers.extend(old.buffers.get(&row.key).map(|buffer| (row.key.clone(), buffer.clone())));
-            }
+            buffers.extend(old.buffers_of(&thing));
             // Its lines may have moved since.
             let now = seen.valueless.iter().find(|(name, _)| name == base_of(&thing.name));
             let chain = now.and_then(|(_, line)| line.clone()).into_iter().collect();

@@ -100,8 +100,8 @@ fn plotted(cx: &mut Cx, rows: &Value, x: &str, y: Option<Vec<Arc<str>>>) -> Resu
     let plot = Plot { x: along, series, title: String::new(), style: Style::Lines };
     let units = plot.units();
     if units.len() > 2 {
-        let told: Vec<&str> = units.iter().map(|u| if u.is_empty() { "no unit" } else { u }).collect();
-        let (found, range) = (format!("columns in {}", told.join(", ")), "columns of at most two units, one for each side".to_owned());
+        let written: Vec<&str> = units.iter().map(|u| if u.is_empty() { "no unit" } else { u }).collect();
+        let (found, range) = (format!("columns in {}", written.join(", ")), "columns of at most two units, one for each side".to_owned());
         return Err(ValueFault::OutsideRange { argument: "y", found, range }.into());
     }
     Ok(plot)

@@ -131,7 +131,8 @@ impl MeshOptimizer<'_> {
 
     /// Whether something near a triangle changed since a search there failed.
     fn is_unsearched(&mut self, t: u32) -> bool {
-        let near = self.rings_of(&self.triangulation.tri[t as usize].clone());
+        let corners = self.triangulation.tri[t as usize];
+        let near = self.rings_of(&corners);
         let since = self.failed_searches.since(t);
         self.failed_searches.is_new(self.triangulation.nodes_of(&near).into_iter(), since)
     }
@@ -230,8 +231,8 @@ impl MeshOptimizer<'_> {
         let (mut best, mut most): (Option<Swept>, f64) = (None, most);
         for round in 0..=LOCAL_SEARCH.max_sweeps {
             let now = self.local_quality(&all);
-            let is_shaped = !by_shape || now.least_shape >= before.least_shape;
-            let is_no_worse = now.least >= before.least && is_shaped;
+            let keeps_shapes = !by_shape || now.least_shape >= before.least_shape;
+            let is_no_worse = now.least >= before.least && keeps_shapes;
             if now.penalty < most && is_no_worse && all.iter().all(|t| self.triangulation.chart_area(*t) > 0.0) {
                 let free = nodes.iter().filter(|n| self.triangulation.is_free(**n));
                 let places = free.map(|n| (*n, self.triangulation.xy[*n as usize], self.triangulation.p[*n as usize])).collect();

@@ -36,7 +36,7 @@ export function decidersOf(buffer) {
   return made;
 }
 
-/** What is told of the size asked at some nodes: who decided it and the mean length. */
+/** What is shown of the size asked at some nodes: who decided it and the mean length. */
 export function askedFacts(buffer, nodes, length) {
   const { header, arrays } = buffer;
   const facts = [];

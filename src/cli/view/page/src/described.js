@@ -1,4 +1,4 @@
-// What is told about a pick: name, kind, size, coordinates, neighbours; and what lies between two picks.
+// What is shown of a pick: name, kind, size, coordinates, neighbours; and what lies between two picks.
 
 import { askedFacts } from './deciders.js';
 import { coordinate, shortNumber } from './dom.js';

@@ -92,7 +92,7 @@ export function createLegend(holder, onBrush) {
     brushable(plot, (a, b) => onBrush(b - a < 0.02 ? null : [at(a), at(b)]));
     let inside = 0;
     if (brush) for (const list of values) for (const v of list) if (v >= brush[0] && v <= brush[1]) inside++;
-    const told = brush
+    const summary = brush
       ? `${inside} of ${total} elements, ${shortNumber(brush[0], 3)} to ${shortNumber(brush[1], 3)}`
       : `${total} elements, ${shortNumber(low, 3)} to ${shortNumber(high, 4)}${about.unit}`;
     const field = (label, k) =>
@@ -126,7 +126,7 @@ export function createLegend(holder, onBrush) {
         field('Shown up to', 1),
         brush && element('button', { type: 'button', text: 'all', onclick: () => onBrush(null) }),
       ),
-      element('p', { text: told, role: 'status' }),
+      element('p', { text: summary, role: 'status' }),
     ];
   }
 

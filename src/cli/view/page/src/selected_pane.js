@@ -15,7 +15,7 @@ const list = (facts) =>
 export function drawSelected(holder, { picks, thing, units, radius, measuring }, on) {
   const parts = [];
   picks.forEach((hit, i) => {
-    const told = describe(hit, units, radius);
+    const description = describe(hit, units, radius);
     parts.push(
       element(
         'section',
@@ -24,16 +24,16 @@ export function drawSelected(holder, { picks, thing, units, radius, measuring },
           'h2',
           {},
           picks.length > 1 && element('span', { class: 'order', text: i === 0 ? 'A' : 'B' }),
-          element('span', { class: 'kind', text: told.kind }),
-          element('span', { text: told.title }),
+          element('span', { class: 'kind', text: description.kind }),
+          element('span', { text: description.title }),
         ),
-        list(told.facts),
-        told.neighbours.length > 0 &&
+        list(description.facts),
+        description.neighbours.length > 0 &&
           element(
             'p',
             { class: 'neighbours' },
             'Beside: ',
-            told.neighbours.map(({ name, item }) =>
+            description.neighbours.map(({ name, item }) =>
               element('button', { type: 'button', class: 'link', text: name, onclick: () => on.neighbour(hit, item) }),
             ),
           ),

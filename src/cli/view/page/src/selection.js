@@ -27,8 +27,8 @@ export class Selection {
     const hit = x === null ? null : this.at(x, y);
     const before = this.hovered;
     this.hovered = hit;
-    const told = hit && describe(hit, this.app.model.frame.units, this.app.stage.sphere().radius);
-    this.app.status.under(told?.title, hit?.point, this.app.stage.sphere().radius);
+    const description = hit && describe(hit, this.app.model.frame.units, this.app.stage.sphere().radius);
+    this.app.status.under(description?.title, hit?.point, this.app.stage.sphere().radius);
     this.app.stage.canvas.classList.toggle('over', Boolean(hit));
     if (!isSame(before, hit)) this.mark();
   }

@@ -153,7 +153,7 @@ export const RULES = {
 
   async edges(legend, shade, current) {
     let [free, three] = [0, 0];
-    const told = () => {
+    const refresh = () => {
       legend.entries = [
         { name: `free: ${free}`, color: theme.loose },
         { name: `of three faces and more: ${three}`, color: theme.triple },
@@ -177,14 +177,14 @@ export const RULES = {
       });
       drawing.set({ mode: 1 });
     }
-    told();
+    refresh();
     for (const drawing of this.solids('mesh').filter((one) => one.object.visible)) {
       const { ends, counts } = await drawing.buffer.find('sides');
       if (!current()) return;
       for (const n of counts) n === 1 ? free++ : three++;
       if (counts.length > 0) this.sides.push(this.drawSides(drawing, ends, counts));
     }
-    told();
+    refresh();
   },
 
   async moved(legend, shade, current) {

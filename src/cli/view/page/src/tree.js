@@ -210,10 +210,10 @@ export function createTree(holder, search, model, state, on) {
     );
   }
 
-  function plainItem(key, name, kind, act, told = '') {
+  function plainItem(key, name, kind, act, words = '') {
     return row(
       key,
-      { class: `plain ${kind}`, title: name, 'aria-label': told ? `${name}, ${told}` : name, onclick: act, enter: act, space: act },
+      { class: `plain ${kind}`, title: name, 'aria-label': words ? `${name}, ${words}` : name, onclick: act, enter: act, space: act },
       element('span', { class: `dot ${kind}`, 'aria-hidden': 'true' }),
       element('span', { class: 'name', text: name }),
     );
