@@ -131,6 +131,12 @@ impl Drop for Charging {
     }
 }
 
+/// Units that this thread may still spend; without a budget as many as there are. The same in every run where no parallel work is charged to
+/// the same budget at the time.
+pub fn left() -> u64 {
+    BUDGET.with_borrow(|budget| budget.as_ref().map_or(u64::MAX, |budget| budget.left().saturating_sub(PENDING.get())))
+}
+
 /// Says that `units` of work are done or about to be done.
 #[inline]
 pub fn spend(units: u64) {
@@ -238,6 +244,20 @@ mod tests {
         let mut items = vec![0_u8; 1000];
         assert_eq!(budget.within(|| par::chunks_mut(&mut items, 10, |_, _| spend(1001))), Err(Exceeded));
         assert_eq!(budget.within(|| par::chunks_mut(&mut items, 10, |_, _| spend(1000))), Ok(()));
+    }
+
+    #[test]
+    fn what_is_left_of_a_budget_is_known_to_a_unit() {
+        assert_eq!(left(), u64::MAX);
+        let after = |units: u64| {
+            Budget::new(100_000).within(|| {
+                spend(units);
+                left()
+            })
+        };
+        assert_eq!(after(10), Ok(99_990));
+        assert_eq!(after(50_001), Ok(49_999));
+        assert_eq!(after(100_000), Ok(0));
     }
 
     #[test]

@@ -71,10 +71,17 @@ pub fn triangulate(task: &Task, job: &Job) -> Outcome<Triangulated> {
     let mut optimizer = MeshOptimizer::new(triangulation, chart_surface, task.field, task.settings);
     optimizer.settle();
     job.go_on()?;
+    if let Some(limit_check) = task.limit_check {
+        // The lengths that were expected may have been far too large where the surface bends.
+        limit_check.allow_work(optimizer.triangulation.tri.len());
+    }
     // Where lengths were wrong, the face is not optimized before better ones are known: its nodes stay on the interpolated surface, and limits are
     // not kept.
     let mut bad = task.limit_check.map_or(Vec::new(), |limit_check| optimizer.broken(limit_check, &[]));
     if optimizer.are_few(&bad) {
+        if task.limit_check.is_some_and(|limit_check| limit_check.is_per_triangle()) {
+            optimizer.reserve_work();
+        }
         if bad.len() * REPAIR.few_over_limit <= optimizer.triangulation.tri.len() {
             optimizer.improve(job)?;
         }

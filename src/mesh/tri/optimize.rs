@@ -15,9 +15,10 @@ use glam::{DVec2, DVec3};
 
 use crate::base::fault::Result;
 use crate::base::job::Job;
+use crate::base::work;
 use crate::mesh::chart::parametric_surface::{ParametricSurface, SizeField};
 use crate::mesh::tri::optimize::failed_repairs::FailedRepairs;
-use crate::mesh::tri::optimize_settings::REPAIR;
+use crate::mesh::tri::optimize_settings::{DIVISION, REPAIR};
 use crate::mesh::tri::pending::Pending;
 use crate::mesh::tri::shape::{PatchRim, Star};
 use crate::mesh::tri::triangulation::{Patch, Ring, Triangulation};
@@ -78,6 +79,9 @@ pub trait LimitCheck {
     /// Whether triangles are bounded one by one, so that a change can be checked before it is made.
     fn is_per_triangle(&self) -> bool;
 
+    /// Allows the face the work that bounds of so many triangles may take; none where they are not bounded one by one.
+    fn allow_work(&self, triangles: usize);
+
     /// Whether a triangle would keep the limits, with its first corner moved to a place; that of a new node has no number below
     /// the border's. Always so where triangles are not bounded one by one.
     fn keeps(&self, triangulation: &Triangulation, corners: [u32; 3], first: Option<(DVec2, DVec3)>) -> bool;
@@ -95,6 +99,8 @@ pub struct MeshOptimizer<'a> {
     pub settings: OptimizeSettings,
     /// The limits of repaired triangles.
     pub limit_check: Option<&'a dyn LimitCheck>,
+    /// Work below which triangles are improved no further, so that the face is made.
+    reserved_work: u64,
     ring: Ring,
     rim: PatchRim,
     patch: Patch,
@@ -130,6 +136,7 @@ impl<'a> MeshOptimizer<'a> {
             field,
             settings,
             limit_check: None,
+            reserved_work: 0,
             ring: Ring::default(),
             rim: PatchRim::default(),
             patch: Patch::default(),
@@ -141,6 +148,16 @@ impl<'a> MeshOptimizer<'a> {
             failed_repairs: FailedRepairs::default(),
             failed_searches: FailedRepairs::default(),
         }
+    }
+
+    /// Keeps a part of the work that is left from improvements.
+    pub fn reserve_work(&mut self) {
+        self.reserved_work = work::left() / DIVISION.reserved_work;
+    }
+
+    /// Whether improvements have to end for what is left of the work.
+    fn is_out_of_work(&self) -> bool {
+        work::left() < self.reserved_work
     }
 
     /// The triangles alone.

@@ -138,6 +138,8 @@ pub(crate) struct DivisionSettings {
     pub(crate) few: usize,
     /// Largest share of triangles to divide, one in so many; where more exceed a limit, lengths are wrong.
     pub(crate) many: usize,
+    /// One part in so many of the work that is left when all limits are kept is not spent on improvements.
+    pub(crate) reserved_work: u64,
 }
 
 pub(crate) const DIVISION: DivisionSettings = DivisionSettings {
@@ -148,6 +150,7 @@ pub(crate) const DIVISION: DivisionSettings = DivisionSettings {
     rough_reduction: 0.05,
     few: 200,
     many: 12,
+    reserved_work: 2,
 };
 
 /// Coarsening within the limits (`coarsen.rs`).

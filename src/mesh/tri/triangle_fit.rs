@@ -1,7 +1,7 @@
 //! Triangles of a face fitted to its limits: made for wanted lengths, bounded, and made again with shorter ones where a bound
 //! exceeds a limit.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 
 use glam::{DVec2, DVec3};
 
@@ -22,6 +22,7 @@ use crate::mesh::request::limits::Limits;
 use crate::mesh::request::methods::{Elements, Method};
 use crate::mesh::request::size_requests::floor_keeps;
 use crate::mesh::request::sources::{Body, STEEP, Source, Sources};
+use crate::mesh::request::work::allow;
 use crate::mesh::size::border_spacing::{FILLED, SPACING};
 use crate::mesh::tri::build::{NodePlacement, Task, expected_nodes, triangulate};
 use crate::mesh::tri::front::HolesInLattice;
@@ -33,6 +34,11 @@ use crate::mesh::tri::optimize::{LimitCheck, OptimizeSettings};
 use crate::mesh::tri::optimize_settings::{BENT_FACE, EVEN_FACE, FIT, GRADED_FACE, TREE_FACE};
 use crate::mesh::tri::triangulation::Triangulation;
 use crate::surface::Surface;
+
+/// Number of curves of a point at which bounding a triangle costs as much as on a net.
+const CURVES_OF_A_NET: usize = 2;
+/// Largest cost of bounding a triangle that is allowed, over that on a net.
+const MAX_NETS: usize = 8;
 
 /// The tag of the edges of a border among sources.
 const BORDER_TAG: u32 = u32::MAX;
@@ -164,6 +170,8 @@ struct Bounded<'a> {
     /// Length of sides up to which limits are not kept, model units.
     floor: f64,
     ratios: &'a RefCell<LimitTable>,
+    /// Work that was allowed for the triangles so far, over all rounds.
+    allowed: &'a Cell<u64>,
 }
 
 impl LimitCheck for Bounded<'_> {
@@ -180,6 +188,14 @@ impl LimitCheck for Bounded<'_> {
 
     fn is_per_triangle(&self) -> bool {
         true
+    }
+
+    fn allow_work(&self, triangles: usize) {
+        let (across, along) = self.fit.surface.curves_of_a_point();
+        let nets = ((across + along) / CURVES_OF_A_NET).clamp(1, MAX_NETS);
+        let mut worth = self.allowed.get();
+        allow(triangles as u64 * nets as u64, &mut worth);
+        self.allowed.set(worth);
     }
 
     fn keeps(&self, triangulation: &Triangulation, corners: [u32; 3], first: Option<(DVec2, DVec3)>) -> bool {
@@ -199,6 +215,8 @@ impl LimitCheck for Longest<'_> {
     fn is_per_triangle(&self) -> bool {
         false
     }
+
+    fn allow_work(&self, _: usize) {}
 
     fn keeps(&self, _: &Triangulation, _: [u32; 3], _: Option<(DVec2, DVec3)>) -> bool {
         true
@@ -279,9 +297,9 @@ impl FaceFit<'_> {
     fn bent(&self, field: &mut GradedSize, job: &Job) -> Outcome<Triangulation> {
         let floor = self.face_input.wanted.written;
         let mut worst = (0.0, DVec3::ZERO, MeshLimit::ChordError);
-        let ratios = RefCell::new(LimitTable::default());
+        let (ratios, allowed) = (RefCell::new(LimitTable::default()), Cell::new(0));
         for _ in 0..FIT.max_rounds {
-            let limit_check = Bounded { fit: self, floor, ratios: &ratios };
+            let limit_check = Bounded { fit: self, floor, ratios: &ratios, allowed: &allowed };
             let triangulation = match triangulate(&self.task(&*field, &limit_check), job)? {
                 // Below a floor limits may be exceeded: `lower` reports that.
                 Ok(result) if result.keeps_limits && floor == 0.0 => return Ok(Ok(result.triangulation)),

@@ -38,6 +38,7 @@ impl<'a> MeshOptimizer<'a> {
                 settled = true;
                 self.settings.min_quality = wanted;
                 if per_triangle {
+                    self.reserve_work();
                     self.limit_check = Some(limit_check);
                     self.changed = Pending::all(self.triangulation.p.len());
                 } else {

@@ -90,7 +90,7 @@ impl MeshOptimizer<'_> {
             }
             for t in bad {
                 job.go_on()?;
-                if left == 0 {
+                if left == 0 || self.is_out_of_work() {
                     break;
                 }
                 if !self.is_bad(t, budget) || budget.by_shape && !self.is_unsearched(t) {

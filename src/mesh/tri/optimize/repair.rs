@@ -24,6 +24,9 @@ impl MeshOptimizer<'_> {
         let mut changes = 0;
         for (_, t) in bad {
             job::poll();
+            if self.is_out_of_work() {
+                break;
+            }
             for _ in 0..3 {
                 if !self.triangulation.alive(t) || self.penalized_quality(t) >= self.settings.min_quality {
                     break;
