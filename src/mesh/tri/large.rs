@@ -11,8 +11,9 @@ use crate::mesh::request::sources::{Source, Sources};
 use crate::mesh::request::work::{allow, too_many};
 use crate::mesh::size::border_spacing::SPACING;
 use crate::mesh::size::too_large::of_size;
+use crate::mesh::tri::background::Background;
 use crate::mesh::tri::build::{NodePlacement, Task, expected_nodes};
-use crate::mesh::tri::graded_size::{Background, GradedSize};
+use crate::mesh::tri::graded_size::GradedSize;
 use crate::mesh::tri::triangle_fit::FaceFit;
 
 /// Share of the uncharged elements up to which the estimate by the least length alone suffices.

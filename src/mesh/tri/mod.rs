@@ -1,11 +1,13 @@
 //! Free faces of triangles: placed by a front or a quadtree, or triangulated between isolines; optimised, refined, coarsened.
 
+pub mod background;
 pub mod build;
 pub mod coarse;
 pub mod coarsen;
 pub mod fill;
 pub mod front;
 pub mod graded_size;
+mod grid_lines;
 pub mod isoline;
 pub mod isoline_mesh;
 pub mod large;

@@ -179,7 +179,7 @@ pub(crate) const QUADTREE: QuadtreeSettings = QuadtreeSettings {
     size_samples: 16,
 };
 
-/// The grid of wanted lengths over a chart (`graded_size.rs`).
+/// The grid of wanted lengths over a chart (`background.rs`).
 pub(crate) struct BackgroundSettings {
     /// Number of lines along the longer side of the first grid, from which the mean length is taken.
     pub(crate) first_lines: usize,
@@ -187,12 +187,37 @@ pub(crate) struct BackgroundSettings {
     pub(crate) max_lines: usize,
     /// Distance of lines over the mean wanted length.
     pub(crate) line_spacing: f64,
+    /// Ratio of lengths between neighbouring lines from which on lines are added between them.
+    pub(crate) max_ratio: f64,
+    /// Cosine of the angle between the normals of neighbouring lines below which lines are added: 30°.
+    pub(crate) min_turn_cosine: f64,
+    /// Share of the distance of lines down to which they are added where the surface turns.
+    pub(crate) min_turn_spacing: f64,
+    /// Largest number of rounds in which lines are added.
+    pub(crate) max_rounds: usize,
+    /// Share of the largest need for lines down to which a gap gets one in the same round.
+    pub(crate) halved_share: f64,
+    /// Ratio of needs that count as equal.
+    pub(crate) alike: f64,
+    /// Number of nodes up to which lines are added; a grid of more than two thirds of it may get half as many again.
+    pub(crate) max_added_nodes: usize,
     /// Ratio of the lengths round a cell from which on they are lowered by one share instead of to one length.
     pub(crate) max_even_ratio: f64,
 }
 
-pub(crate) const BACKGROUND: BackgroundSettings =
-    BackgroundSettings { first_lines: 12, max_lines: 384, line_spacing: 2.0, max_even_ratio: 2.0 };
+pub(crate) const BACKGROUND: BackgroundSettings = BackgroundSettings {
+    first_lines: 12,
+    max_lines: 384,
+    line_spacing: 2.0,
+    max_ratio: 1.5,
+    min_turn_cosine: 0.866,
+    min_turn_spacing: 0.125,
+    max_rounds: 32,
+    halved_share: 0.5,
+    alike: 0.999,
+    max_added_nodes: 4000,
+    max_even_ratio: 2.0,
+};
 
 /// Cells between lines of constant u and v, and the triangulation of them (`isoline.rs`, `isoline_mesh.rs`).
 pub(crate) struct IsolineSettings {
