@@ -14,7 +14,7 @@ use crate::mesh::data::face_mesh::FaceMesh;
 use crate::mesh::data::mesh::Mesh;
 use crate::mesh::data::quality::least_angle;
 use crate::mesh::deviation::edge_length;
-use crate::mesh::mapped::trilateral::LatticeIds;
+use crate::mesh::face::map_cells::{CellNode, SampledCell, View, sampled_cells};
 use crate::mesh::request::limits::Limits;
 use crate::mesh::request::methods::{Elements, Method};
 use crate::mesh::size::border_spacing::{FILLED, SPACING};
@@ -35,12 +35,18 @@ pub(crate) struct MapChoiceSettings {
     max_fair_element_ratio: f64,
     /// Largest number of free elements for one that was predicted.
     max_prediction_error: f64,
+    /// One triangle of a free mesh in so many may be sharper than a sharp map.
+    few_sharp: usize,
+    /// Largest ratio of the least angle of a sharp map and that of a free mesh that is kept.
+    max_sharp_ratio: f64,
     /// Number of elements up to which a free mesh may have any number of times the predicted one.
     small_face: u64,
     /// Length of free elements between near borders, over the distance of these.
     near_border_length: f64,
-    /// Number of cells of blocks that are sampled.
-    block_samples: usize,
+    /// Number of gaps between the rows, and columns, of a grid that are sampled; maps of triangles and blocks have samples of their own.
+    samples: usize,
+    /// The same for lengths by bends.
+    samples_by_bends: usize,
     /// Share of the elements of a face that closes on itself above which, with normals opposite to the surface's, they do not follow it.
     max_opposite_share: f64,
 }
@@ -65,9 +71,12 @@ pub(crate) const MAP_CHOICE: MapChoiceSettings = MapChoiceSettings {
     max_element_ratio: 2.5,
     max_fair_element_ratio: 2.0,
     max_prediction_error: 4.0,
+    few_sharp: 500,
+    max_sharp_ratio: 1.5,
     small_face: 100,
     near_border_length: 2.0,
-    block_samples: 12,
+    samples: 4,
+    samples_by_bends: 24,
     max_opposite_share: 0.1,
 };
 
@@ -83,7 +92,7 @@ pub struct MapQuality {
     pub away: f64,
     /// The sharpest corner of the face itself, radians.
     pub corner: f64,
-    /// Number of elements of a free mesh for one of the map.
+    /// Number of elements of a free mesh for one of the map; computed where the angles of a free mesh are better, else infinite.
     pub element_ratio: f64,
     /// The elements are triangles.
     pub split: bool,
@@ -92,11 +101,15 @@ pub struct MapQuality {
 impl MapQuality {
     /// Whether free elements have clearly larger angles and are not many more. A sharp corner has one sharp element with any method.
     pub fn is_worse_than_free(&self) -> bool {
-        let AngleChoice { accepted, free, min_gain } = if self.split { MAP_CHOICE.triangles } else { MAP_CHOICE.quads };
-        let worse = |angle: f64, free: f64| angle < accepted && min_gain * angle <= free;
         let fair = self.angle.min(self.away) >= MAP_CHOICE.min_map_angle;
         let most = if fair { MAP_CHOICE.max_fair_element_ratio } else { MAP_CHOICE.max_element_ratio };
-        (worse(self.angle, free.min(self.corner)) || worse(self.away, free)) && self.element_ratio <= most
+        self.is_sharper_than_free() && self.element_ratio <= most
+    }
+
+    fn is_sharper_than_free(&self) -> bool {
+        let AngleChoice { accepted, free, min_gain } = if self.split { MAP_CHOICE.triangles } else { MAP_CHOICE.quads };
+        let worse = |angle: f64, free: f64| angle < accepted && min_gain * angle <= free;
+        worse(self.angle, free.min(self.corner)) || worse(self.away, free)
     }
 }
 
@@ -125,7 +138,7 @@ pub fn better_free(
     predicted.iter().enumerate().filter_map(chosen).collect()
 }
 
-/// Faces that are free for better angles and have none, or many more elements than predicted, or elements with normals opposite to the surface's.
+/// Faces that are free for better angles and have clearly worse ones, or many more elements than predicted, or elements with normals opposite to the surface's.
 pub fn better_mapped(face_input: &FaceInput, prepared: &[FaceMesh], mesh: &Mesh) -> Vec<usize> {
     let worse = |f: usize| {
         let (face, face_mesh) = (&face_input.layout.faces[f], &prepared[f]);
@@ -138,11 +151,16 @@ pub fn better_mapped(face_input: &FaceInput, prepared: &[FaceMesh], mesh: &Mesh)
     (0..prepared.len()).filter(|f| found[*f]).collect()
 }
 
-/// Whether some triangle of a free face of triangles has a smaller angle than its map would have, radians.
+/// Whether triangles of a free face of triangles have smaller angles than its map would have, radians. A few of them do not matter where the map
+/// has angles that a warning would tell of as well.
 fn is_sharper(face_mesh: &FaceMesh, mesh: &Mesh, of_map: f64) -> bool {
     let FaceNodes::Free(free, ids) = &face_mesh.geometry.nodes else { return false };
     let corners = |t: &[u32; 3]| t.map(|n| mesh.nodes[ids[n as usize] as usize]);
-    free.quads.is_empty() && free.triangles.iter().any(|t| least_angle(&corners(t), false) < of_map)
+    let angles = free.triangles.iter().map(|t| least_angle(&corners(t), false));
+    let sharper: Vec<f64> = angles.filter(|angle| *angle < of_map).collect();
+    let few = sharper.len() * MAP_CHOICE.few_sharp <= free.triangles.len()
+        && sharper.iter().all(|angle| MAP_CHOICE.max_sharp_ratio * angle >= of_map);
+    free.quads.is_empty() && !sharper.is_empty() && !(of_map < MAP_CHOICE.min_map_angle && few)
 }
 
 /// Whether the elements of a free face cross its surface instead of following it, as a few of them round a whole ring may.
@@ -177,30 +195,9 @@ pub fn is_written(face: &Face, sizing: &Sizing) -> bool {
     face.sides.iter().any(all)
 }
 
-/// A node of a cell: its number and its place.
-type CellNode = (u32, (f64, f64));
-
-/// Nodes of a face with their points, which are computed for inner ones.
-struct View<'a> {
-    face_input: &'a FaceInput<'a>,
-    face_mesh: &'a FaceMesh,
-}
-
-impl View<'_> {
-    fn point(&self, (id, (u, v)): CellNode) -> DVec3 {
-        if id < self.face_mesh.first { self.face_input.points[id as usize] } else { self.face_mesh.geometry.surface.point(u, v) }
-    }
-
-    /// Corners of a cell, those at a pole once.
-    fn cell(&self, nodes: &[CellNode]) -> Vec<DVec3> {
-        let distinct = (0..nodes.len()).filter(|k| nodes[*k].0 != nodes[(k + 1) % nodes.len()].0);
-        distinct.map(|k| self.point(nodes[k])).collect()
-    }
-}
-
 fn of_face(face_input: &FaceInput, face: &Face, face_mesh: &FaceMesh) -> Option<MapQuality> {
     let view = View { face_input, face_mesh };
-    let cells = cells(face_mesh)?;
+    let cells = sampled_cells(face_mesh, MAP_CHOICE.samples)?;
     let split = face_mesh.elements == Elements::Triangles;
     let shapes: Vec<Vec<DVec3>> = cells.iter().map(|cell| view.cell(&cell.nodes)).collect();
     let angles: Vec<f64> = shapes.iter().map(|cell| least_angle(cell, split)).collect();
@@ -208,68 +205,30 @@ fn of_face(face_input: &FaceInput, face: &Face, face_mesh: &FaceMesh) -> Option<
     let away = angles.iter().zip(&cells).zip(&shapes).filter(|((_, cell), shape)| !cell.corner && shape.len() == cell.nodes.len());
     let away = away.map(|((angle, _), _)| *angle).fold(f64::INFINITY, f64::min);
     let corner = corners(&view, face, face_mesh);
-    let limits = Limits::of(face_input.input);
-    let bends = (limits.chord.is_some() || limits.angle.is_some()) && !face_mesh.geometry.surface.is_flat();
-    let each = cells.iter().zip(&shapes).filter(|(_, shape)| shape.len() > 2).map(|(cell, shape)| {
-        let by_bends = if bends { wanted(&face_mesh.geometry.surface, &limits, &cell.nodes) } else { f64::INFINITY };
-        element_ratio(face.size.0.min(by_bends), shape, shape.len() < cell.nodes.len(), cell.rows, split)
-    });
-    let element_ratio = each.sum::<f64>() / cells.len() as f64;
-    Some(MapQuality { angle, away, corner, element_ratio, split })
-}
-
-/// A cell of a map.
-struct SampledCell {
-    nodes: Vec<CellNode>,
-    /// At a corner of the face.
-    corner: bool,
-    /// Number of cells in its row and in its column; 1 where they are not alike.
-    rows: (usize, usize),
-}
-
-/// Some cells of a map.
-fn cells(face_mesh: &FaceMesh) -> Option<Vec<SampledCell>> {
-    match &face_mesh.geometry.nodes {
-        FaceNodes::Grid(grid, frame) => {
-            let (nu, nv) = grid.size();
-            let node = |(i, j): (usize, usize)| (frame.node(i, j), grid.uv(i, j));
-            let some = |n: usize| {
-                let mut places = vec![0, n / 4, n / 2, n - 1 - n / 4, n - 1];
-                places.sort_unstable();
-                places.dedup();
-                places
-            };
-            let at = some(nv).into_iter().flat_map(|j| some(nu).into_iter().map(move |i| (i, j)));
-            let end = |k: usize, n: usize| k == 0 || k == n - 1;
-            let cell = |(i, j): (usize, usize)| SampledCell {
-                nodes: [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)].map(node).to_vec(),
-                corner: end(i, nu) && end(j, nv),
-                rows: (nu, nv),
-            };
-            Some(at.map(cell).collect())
-        }
-        FaceNodes::Lattice(lattice, frame) => {
-            let n = lattice.size();
-            let node = |(i, j): (usize, usize)| (frame.node(i, j), lattice.uv(i, j));
-            let (third, half) = (n / 3, n / 2);
-            let near = |(i, j): (usize, usize)| {
-                [(third, third), (0, 0), (n - 1, 0), (0, n - 1), (half, 0), (0, half), (n - 1 - half, half)].contains(&(i, j))
-            };
-            let all = LatticeIds::triangles(n).filter(|t| near(t[0]));
-            let corner = |at: (usize, usize)| [(0, 0), (n - 1, 0), (0, n - 1)].contains(&at);
-            Some(all.map(|t| SampledCell { nodes: t.map(node).to_vec(), corner: corner(t[0]), rows: (n, n) }).collect())
-        }
-        FaceNodes::Blocks(blocks, places) => {
-            let node = |n: u32| (places[n as usize], blocks.uv[n as usize]);
-            let count = blocks.quads.len();
-            let apart = count.div_ceil(MAP_CHOICE.block_samples).max(1);
-            let some = blocks.quads.iter().step_by(apart).chain(blocks.quads.last());
-            let ends: Vec<u32> = blocks.sides.iter().filter_map(|side| side.first()).chain(blocks.sides[1].last()).copied().collect();
-            let corner = |q: &[u32; 4]| q.iter().any(|n| ends.contains(n));
-            Some(some.map(|q| SampledCell { nodes: q.map(node).to_vec(), corner: corner(q), rows: (1, 1) }).collect())
-        }
-        _ => None,
+    let mut quality = MapQuality { angle, away, corner, element_ratio: f64::INFINITY, split };
+    if quality.is_sharper_than_free() {
+        let limits = Limits::of(face_input.input);
+        let bends = (limits.chord.is_some() || limits.angle.is_some()) && !face_mesh.geometry.surface.is_flat();
+        quality.element_ratio = if bends {
+            // Lengths by bends vary from row to row.
+            let cells = sampled_cells(face_mesh, MAP_CHOICE.samples_by_bends)?;
+            mean_element_ratio(&view, face, &cells, &|nodes| wanted(&face_mesh.geometry.surface, &limits, nodes))
+        } else {
+            mean_element_ratio(&view, face, &cells, &|_| f64::INFINITY)
+        };
     }
+    Some(quality)
+}
+
+/// Number of free elements for one of the map, by the mean of some cells; `by_bends` is the length that limits allow in a cell.
+fn mean_element_ratio(view: &View, face: &Face, cells: &[SampledCell], by_bends: &dyn Fn(&[CellNode]) -> f64) -> f64 {
+    let split = view.face_mesh.elements == Elements::Triangles;
+    let ratio = |cell: &SampledCell| {
+        let shape = view.cell(&cell.nodes);
+        let size = face.size.0.min(by_bends(&cell.nodes));
+        if shape.len() > 2 { element_ratio(size, &shape, shape.len() < cell.nodes.len(), cell.rows, split) } else { 0.0 }
+    };
+    cells.iter().map(ratio).sum::<f64>() / cells.len() as f64
 }
 
 /// The sharpest corner of a face: between the first steps of its sides; at a pole all round it.

@@ -2,6 +2,7 @@
 
 pub mod coincident;
 pub mod free;
+mod map_cells;
 pub mod map_quality;
 pub mod mapped;
 pub mod twins;
