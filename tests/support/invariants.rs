@@ -272,8 +272,9 @@ impl<'a> Seen<'a> {
             }
             worst = if off.0 > worst.0 { off } else { worst };
         }
-        // What is told comes from places too, and is nothing where it is nothing but rounding.
-        if worst.0 > told * 1.05 + ON * self.size {
+        // What is told comes from 25 other places, which miss up to a fifteenth where a triangle leans on a sharp bend, and is nothing where
+        // it is nothing but rounding.
+        if worst.0 > told * 1.07 + ON * self.size {
             found.push(format!("{} off at {}, and {told} is told", worst.0, worst.1));
         }
         let Some(limit) = self.written("chord_error:") else { return false };
