@@ -55,7 +55,7 @@ mod tests {
 
     #[test]
     fn places_are_found_between_lines_at_any_distances() {
-        let mut at: Vec<f64> = (0..=40).map(|k| 2.0 + 0.5_f64.powi(k)).collect();
+        let mut at: Vec<f64> = (0..=40).map(|k| 2.0 + 1.0 / (1_u64 << k) as f64).collect();
         at.extend((0..=7).map(|k| f64::from(k) * 0.25));
         at.sort_by(f64::total_cmp);
         let lines = Lines::new(at.clone());
