@@ -5,6 +5,8 @@ use std::ops::Range;
 use glam::DVec3;
 
 use crate::mesh::data::face_geometry::{FaceGeometry, FaceNodes};
+use crate::mesh::data::mesh::Mesh;
+use crate::mesh::data::quality::QualityTally;
 use crate::mesh::mapped::diagonals::{DiagonalRule, diagonals};
 use crate::mesh::mapped::grid;
 use crate::mesh::mapped::trilateral::LatticeIds;
@@ -138,5 +140,13 @@ impl FaceMesh {
                 }
             }
         }
+    }
+}
+
+/// Notes the quality of the elements of each face.
+pub fn measure_quality(prepared: &mut [FaceMesh], mesh: &Mesh) {
+    let ranges = element_ranges(prepared);
+    for (face_mesh, (triangles, quads)) in prepared.iter_mut().zip(ranges) {
+        face_mesh.geometry.quality = Some(QualityTally::of(&mesh.triangles[triangles], &mesh.quads[quads], &mesh.nodes));
     }
 }

@@ -23,6 +23,8 @@ struct StepSettings {
     max_tried_from_one: u32,
     /// Counts up to which those from the half on are tried; of larger ones the least is found to within what one step more changes.
     max_tried_from_half: u32,
+    /// Counts above a broken one grow by one part in so many, and one.
+    counts_a_try: u32,
     /// A count grows by no more than this factor at a time: steps longer than bends seem to need more than they do.
     max_growth: f64,
     /// Halvings of a step's control polygon; each brings the bound four times closer to the truth.
@@ -38,6 +40,7 @@ struct StepSettings {
 const SETTINGS: StepSettings = StepSettings {
     max_tried_from_one: 32,
     max_tried_from_half: 4096,
+    counts_a_try: 256,
     max_growth: 2.0,
     halvings: 4,
     probes: 8,
@@ -86,6 +89,25 @@ pub fn least_steps(layout: &Layout, segment: usize, divided: &dyn Fn(u32) -> Vec
         }
     }
     Ok(n)
+}
+
+/// The next count above one that breaks the limits that keeps them; `None` where they are kept. Limits that fewer steps keep may be broken by
+/// more, whose ends fall elsewhere on the bends of the segment.
+pub fn more_steps(
+    layout: &Layout,
+    segment: usize,
+    divided: &dyn Fn(u32) -> Vec<f64>,
+    limits: &Limits,
+    (count, cap): (u32, u32),
+) -> Result<Option<u32>> {
+    let line = LimitedSegment { layout, segment, limits };
+    let (mut worst, mut n) = (Vec::new(), count);
+    while n < cap {
+        let Some(at) = line.broken(&divided(n), &worst)? else { break };
+        worst.push(at);
+        n = (n + 1 + n / SETTINGS.counts_a_try).min(cap);
+    }
+    Ok((n > count).then_some(n))
 }
 
 impl StepRatio {

@@ -218,11 +218,10 @@ impl Relations {
         let worst = (0..verdicts.len()).max_by(|a, b| verdicts[*a].worst().total_cmp(&verdicts[*b].worst())).unwrap_or(0);
         let face = &layout.faces[worst];
         let surface = input.model.surfaces[face.surface.index()].surface.origin();
-        let limit = verdicts[worst].broken;
+        let Verdict { broken: limit, reached, .. } = verdicts.get(worst).copied().unwrap_or(Verdict::FINE);
         let written_at = input.plan.limit(limit).map(|value| value.1);
         let at = crate::mesh::border::layout::middle(input, face);
-        SizeFault::NotReached { limit, written_at: written_at.unwrap_or(input.plan.origin), surface, reached: verdicts[worst].reached, at }
-            .into()
+        SizeFault::NotReached { limit, written_at: written_at.unwrap_or(input.plan.origin), surface, reached, at }.into()
     }
 }
 

@@ -33,7 +33,7 @@ struct CheckSettings {
 const SETTINGS: CheckSettings = CheckSettings { measured_room: 1.001, min_samples: 64, max_cell_samples: 16 };
 
 /// What a face demands, as factors on its counts along u and along v (a triangle: the first for all).
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct Verdict {
     /// For the size; a written count may overrule it.
     pub size: [f64; 2],

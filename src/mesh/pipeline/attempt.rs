@@ -12,7 +12,6 @@ use crate::mesh::cache::reuse::{CacheView, KeyedFaces, recall_face, recall_steps
 use crate::mesh::chart::face_input::FaceInput;
 use crate::mesh::data::face_mesh::{self, FaceMesh, FaceRanges};
 use crate::mesh::data::mesh::Mesh;
-use crate::mesh::data::quality::QualityTally;
 use crate::mesh::divide::relations::Relations;
 use crate::mesh::divide::row_demand::{self, RowDemand};
 use crate::mesh::divide::strips;
@@ -79,6 +78,8 @@ enum Retry {
     BetterFree(Vec<(usize, Uneven, u64)>),
     /// Free faces that turned out worse than their maps.
     BetterMapped(Vec<usize>),
+    /// Steps of segments break a limit that fewer keep: these are the next counts that do.
+    BrokenSteps(Vec<(usize, u32)>),
     /// A face breaks a limit: its rows demand more steps.
     BrokenLimits,
     /// Faces have elements or edges between the same nodes.
@@ -128,6 +129,8 @@ struct Attempt<'a> {
     /// Searches for near borders that are left, and the counts at which steps were shortened last.
     searches: usize,
     shortened: Vec<u32>,
+    /// How often steps that broke a limit were raised.
+    raises: u32,
     /// Work charged for the counts so far.
     charged_work: u64,
     /// Number of demands on each face because it shares nodes with another one.
@@ -155,6 +158,7 @@ pub(crate) fn attempt(input: &Input, layout: &mut Layout, size: f64, cache: Opti
         verdicts: Vec::new(),
         searches: ATTEMPT.max_border_searches,
         shortened: Vec::new(),
+        raises: 0,
         charged_work: 0,
         demands_on: BTreeMap::new(),
     };
@@ -200,9 +204,8 @@ impl Attempt<'_> {
             return Ok(RoundResult::Again(Retry::UnevenBorders(crowded), counts));
         }
         let DividedSegments { counts, strip, nodes, is_settled } = self.divide(counts, strip)?;
-        let uneven = uneven::find(self.layout, &nodes, input.tolerance.point, &self.sizing);
-        if !uneven.is_empty() {
-            return Ok(RoundResult::Again(Retry::UnevenBorders(uneven), counts));
+        if let Some(retry) = self.unfit_borders(&counts, &nodes)? {
+            return Ok(RoundResult::Again(retry, counts));
         }
         let border = nodes.points(self.layout, &input.plan.points);
         let face_input = FaceInput { input, layout: &*self.layout, nodes: &nodes, points: &border, wanted: &self.sizing.wanted };
@@ -258,7 +261,7 @@ impl Attempt<'_> {
         }
         self.layout.faces.iter_mut().zip(&predicted).for_each(|(face, found)| face.foreseen = found.map(|found| found.angle));
         let face_input = FaceInput { input, layout: &*self.layout, nodes: &nodes, points: &border, wanted: &self.sizing.wanted };
-        measure_quality(&mut prepared, &mesh);
+        face_mesh::measure_quality(&mut prepared, &mesh);
         let blames = blame::of_faces(&face_input, &self.sizing, &predicted, &prepared, &mesh);
         let sharp: Vec<Remark> = blames.iter().filter_map(|seen| seen.sharp.clone()).collect();
         let mut sizing = std::mem::take(&mut self.sizing);
@@ -268,6 +271,16 @@ impl Attempt<'_> {
         let mut explanation = Explanation::new(input, self.layout, &sizing, &prepared, &counts, &strip);
         explanation.lines.iter_mut().zip(blames).for_each(|(line, blame)| line.push_str(&blame.line));
         Ok(RoundResult::Done(Box::new(FinishedMesh { nodes, prepared, sizing, mesh, explanation })))
+    }
+
+    /// Why borders divided like this are divided anew.
+    fn unfit_borders(&self, counts: &[u32], nodes: &Nodes) -> Result<Option<Retry>> {
+        let broken = self.sizing.broken(self.input, self.layout, counts)?;
+        if !broken.is_empty() {
+            return Ok(Some(Retry::BrokenSteps(broken)));
+        }
+        let uneven = uneven::find(self.layout, nodes, self.input.tolerance.point, &self.sizing);
+        Ok((!uneven.is_empty()).then_some(Retry::UnevenBorders(uneven)))
     }
 
     /// A face that closes on itself and has to have shorter steps for it; fails for what is wrong with a face otherwise.
@@ -294,6 +307,12 @@ impl Attempt<'_> {
                 self.shortened = counts;
                 return Ok(());
             }
+            Retry::BrokenSteps(mut raised) => {
+                // The segments of a strip have one count: each time more is demanded, or they might take turns in breaking a limit.
+                raised.iter_mut().for_each(|(_, least)| *least += *least / 32 * self.raises);
+                self.raises += 1;
+                return self.sizing.raise(self.input, self.layout, &raised);
+            }
             Retry::BrokenLimits => {
                 self.relations.raise(&self.verdicts, &counts);
                 self.checked = counts;
@@ -319,14 +338,6 @@ impl Attempt<'_> {
         self.narrow.clear();
         (self.first, self.checked, self.shortened) = (Vec::new(), Vec::new(), Vec::new());
         Ok(())
-    }
-}
-
-/// Notes the quality of the elements of each face.
-fn measure_quality(prepared: &mut [FaceMesh], mesh: &Mesh) {
-    let ranges = face_mesh::element_ranges(prepared);
-    for (face_mesh, (triangles, quads)) in prepared.iter_mut().zip(ranges) {
-        face_mesh.geometry.quality = Some(QualityTally::of(&mesh.triangles[triangles], &mesh.quads[quads], &mesh.nodes));
     }
 }
 

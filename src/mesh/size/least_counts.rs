@@ -9,11 +9,12 @@ use crate::base::par;
 use crate::base::tolerance::WHOLE_NUMBER;
 use crate::mesh::border::counts::steps;
 use crate::mesh::border::layout::{Face, Layout};
-use crate::mesh::deviation::curve::least_steps;
+use crate::mesh::deviation::curve::{least_steps, more_steps};
 use crate::mesh::request::input::Input;
 use crate::mesh::request::limits::Limits;
 use crate::mesh::request::recall::RecallSteps;
 use crate::mesh::size::border_spacing::BorderSpacings;
+use crate::mesh::size::sizing::Sizing;
 
 /// One step more than a segment may have: enough to refuse it.
 pub(super) const MAX_COUNT: u32 = MESH_STEPS + 1;
@@ -52,6 +53,24 @@ pub(super) fn for_limits(
         let is_worth = (limits.chord.is_some() || limits.angle.is_some()) && spacings[k].is_none();
         if is_worth { recall(&key, &find) } else { find() }
     })
+}
+
+/// Segments whose steps break a limit, with the next count of each that keeps it. Counts are those of all segments, `least` what each was
+/// known to keep its limits with.
+pub(super) fn broken(input: &Input, layout: &Layout, sizing: &Sizing, counts: &[u32]) -> Result<Vec<(usize, u32)>> {
+    let limits = Limits::of(input);
+    if limits.chord.is_none() && limits.angle.is_none() {
+        return Ok(Vec::new());
+    }
+    let coarse = coarse_borders(input, layout, &limits);
+    let found = par::try_map(sizing.decisions.len(), |k| {
+        if counts[k] <= sizing.decisions[k].least {
+            return Ok(None);
+        }
+        let limits = if coarse[k] { limits.turning(MAX_TURN) } else { limits };
+        more_steps(layout, k, &|count| sizing.fractions(k, count), &limits, (counts[k], MAX_COUNT))
+    })?;
+    Ok(found.into_iter().enumerate().filter_map(|(k, more)| Some((k, more?))).collect())
 }
 
 /// Segments whose steps a chord error alone may make so long that triangles beside them are tilted: those of bent faces made with

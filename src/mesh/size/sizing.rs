@@ -164,6 +164,23 @@ impl Sizing {
         }
     }
 
+    /// Segments that these counts break a limit on, though fewer steps keep it, with the next count of each that does.
+    pub fn broken(&self, input: &Input, layout: &Layout, counts: &[u32]) -> Result<Vec<(usize, u32)>> {
+        least_counts::broken(input, layout, self, counts)
+    }
+
+    /// Raises the least counts of some segments; E707 where steps are then below the floor of the size.
+    pub fn raise(&mut self, input: &Input, layout: &Layout, raised: &[(usize, u32)]) -> Result<()> {
+        for (k, least) in raised {
+            let decision = &mut self.decisions[*k];
+            (decision.least, decision.demand) = (*least, decision.demand.max(*least));
+            if decision.count.is_none() {
+                self.refuse_below_floor(input, layout, *k, *least, 0)?;
+            }
+        }
+        Ok(())
+    }
+
     /// E707 where limits demand steps below the floor of the size: more than `apart`, which keep segments apart.
     fn refuse_below_floor(&self, input: &Input, layout: &Layout, k: usize, least: u32, apart: u32) -> Result<()> {
         let length = layout.length(k);
