@@ -123,8 +123,7 @@ impl Sizing {
                 self.refuse_below_floor(input, layout, k, least, apart[k])?;
             }
             let unrounded = demand.max(least);
-            let demand = if rings[k] && unrounded < MAX_COUNT { unrounded.next_multiple_of(STEPS_OF_RING) } else { unrounded };
-            self.decisions.push(Decision { count, size, bias, least, demand, unrounded });
+            self.decisions.push(Decision { count, size, bias, least, demand: rounded(unrounded, rings[k]), unrounded });
         }
         Ok(())
     }
@@ -171,9 +170,17 @@ impl Sizing {
 
     /// Raises the least counts of some segments; E707 where steps are then below the floor of the size.
     pub fn raise(&mut self, input: &Input, layout: &Layout, raised: &[(usize, u32)]) -> Result<()> {
+        let rings = rings_of_squares(input, layout);
         for (k, least) in raised {
             let decision = &mut self.decisions[*k];
-            (decision.least, decision.demand) = (*least, decision.demand.max(*least));
+            if let (None, Some(rule)) = (decision.count, decision.size.1)
+                && decision.unrounded > decision.least
+            {
+                // It asked for the steps that were raised.
+                self.effects.mark_used(rule);
+            }
+            let unrounded = decision.unrounded.max(*least);
+            (decision.least, decision.unrounded, decision.demand) = (*least, unrounded, rounded(unrounded, rings[*k]));
             if decision.count.is_none() {
                 self.refuse_below_floor(input, layout, *k, *least, 0)?;
             }
@@ -228,6 +235,11 @@ impl Sizing {
             (a, b) => a.or(b),
         };
     }
+}
+
+/// A demanded count, of a ring in a plane face of quads raised to a multiple of [`STEPS_OF_RING`].
+fn rounded(count: u32, is_ring: bool) -> u32 {
+    if is_ring && count < MAX_COUNT { count.next_multiple_of(STEPS_OF_RING) } else { count }
 }
 
 /// Rings round and in plane faces of free quads.
