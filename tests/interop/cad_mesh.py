@@ -44,7 +44,6 @@ LONGEST = 240
 # What is known not to hold: part and method, and why.
 OPEN = "the other kernel leaves the seam of the net open, which is closed here: its Euler number is that of a strip"
 KNOWN = {f"offset_net_ring_all {m}": OPEN for m in METHODS}
-KNOWN["long_pipe quads"] = "a limit of half the radius on a pipe of two thousand of them: pairs break it again and again until the work is spent (E217)"
 
 MODEL = """units mm
 import "{file}" as part

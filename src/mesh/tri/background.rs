@@ -60,12 +60,32 @@ impl Background {
             field = even((lines as usize).min(BACKGROUND.max_lines));
         }
         let most = BACKGROUND.max_added_nodes.max(field.size.len() + field.size.len() / 2);
+        let even = field.lines.clone();
         for _ in 0..BACKGROUND.max_rounds {
             let Some(lines) = field.finer_lines(most) else { break };
             field = field.with_more_lines(lines, &node);
         }
+        field.drop_needless_lines(&even);
         field.level();
         field
+    }
+
+    /// Drops the lines that were added between two even ones where all lengths turned out as these two say: round a cylinder the surface
+    /// turns, but lengths are alike.
+    fn drop_needless_lines(&mut self, even: &(Lines, Lines)) {
+        let (nx, ny) = self.n();
+        let size = |i: usize, j: usize| self.size[j * nx + i];
+        let columns = needed_lines(&self.lines.0, &even.0, ny, size);
+        let rows = needed_lines(&self.lines.1, &even.1, nx, |j, i| size(i, j));
+        if columns.len() == nx && rows.len() == ny {
+            return;
+        }
+        let kept: Vec<usize> = rows.iter().flat_map(|j| columns.iter().map(move |i| j * nx + i)).collect();
+        self.p = kept.iter().map(|k| self.p[*k]).collect();
+        self.normal = kept.iter().map(|k| self.normal[*k]).collect();
+        self.size = kept.iter().map(|k| self.size[*k]).collect();
+        let of = |lines: &Lines, kept: &[usize]| Lines::new(kept.iter().map(|k| lines.at[*k]).collect());
+        self.lines = (of(&self.lines.0, &columns), of(&self.lines.1, &rows));
     }
 
     fn with_lines(lines: (Lines, Lines), growth: f64, node: &(impl Fn(DVec2) -> Node + Sync)) -> Self {
@@ -199,6 +219,27 @@ impl Background {
             }
         }
     }
+}
+
+/// The even lines, and those between two of them where a length differs from what lies between the lengths at these two; `across` lengths lie
+/// on each line.
+fn needed_lines(lines: &Lines, even: &Lines, across: usize, size: impl Fn(usize, usize) -> f64) -> Vec<usize> {
+    let is_even = even.indices_in(lines);
+    let even: Vec<usize> = (0..lines.at.len()).filter(|k| is_even[*k].is_some()).collect();
+    let mut needed = vec![even[0]];
+    for gap in even.windows(2) {
+        let [low, high] = [gap[0], gap[1]];
+        let differs = |k: usize, at: usize| {
+            let share = (lines.at[k] - lines.at[low]) / (lines.at[high] - lines.at[low]);
+            let between = size(low, at) + share * (size(high, at) - size(low, at));
+            size(k, at) > BACKGROUND.max_needless_ratio * between || between > BACKGROUND.max_needless_ratio * size(k, at)
+        };
+        if (low + 1..high).any(|k| (0..across).any(|at| differs(k, at))) {
+            needed.extend(low + 1..high);
+        }
+        needed.push(high);
+    }
+    needed
 }
 
 impl SizeField for Background {

@@ -203,6 +203,8 @@ pub(crate) struct BackgroundSettings {
     pub(crate) max_added_nodes: usize,
     /// Ratio of the lengths round a cell from which on they are lowered by one share instead of to one length.
     pub(crate) max_even_ratio: f64,
+    /// Largest ratio of a length on an added line and that between the even lines beside it for which the line says nothing new.
+    pub(crate) max_needless_ratio: f64,
 }
 
 pub(crate) const BACKGROUND: BackgroundSettings = BackgroundSettings {
@@ -217,6 +219,7 @@ pub(crate) const BACKGROUND: BackgroundSettings = BackgroundSettings {
     alike: 0.999,
     max_added_nodes: 4000,
     max_even_ratio: 2.0,
+    max_needless_ratio: 1.1,
 };
 
 /// Cells between lines of constant u and v, and the triangulation of them (`isoline.rs`, `isoline_mesh.rs`).
