@@ -259,27 +259,26 @@ impl<'a> Seen<'a> {
         worst
     }
 
-    /// Places of elements are no farther from their surface than is said, and than the setting allows; of a quad by one of its two
-    /// diagonals, for which one the measure takes is not told.
-    fn chord(&self, near: &[Nearest], told: Option<f64>, found: &mut Vec<String>) -> bool {
-        let told = told.unwrap_or(0.0);
+    /// Places of elements are no farther from their surface than is reported, and than the setting allows; of a quad by one of its two
+    /// diagonals, for which one the measure takes is not known.
+    fn chord(&self, near: &[Nearest], reported: Option<f64>, found: &mut Vec<String>) -> bool {
+        let reported = reported.unwrap_or(0.0);
         let mut worst = (0.0_f64, DVec3::ZERO);
         for ([one, other], f) in some(&self.elements()) {
             let mut off = self.farthest(near, &one, f);
-            if off.0 > told && one != other {
+            if off.0 > reported && one != other {
                 let again = self.farthest(near, &other, f);
                 off = if again.0 < off.0 { again } else { off };
             }
             worst = if off.0 > worst.0 { off } else { worst };
         }
-        // What is told comes from 25 other places, which miss up to a fifteenth where a triangle leans on a sharp bend, and is nothing where
-        // it is nothing but rounding.
-        if worst.0 > told * 1.07 + ON * self.size {
-            found.push(format!("{} off at {}, and {told} is told", worst.0, worst.1));
+        // What is reported comes from climbing in four triangles from 25 places of all, and is nothing where it is nothing but rounding.
+        if worst.0 > reported * 1.03 + ON * self.size {
+            found.push(format!("{} off at {}, and {reported} is reported", worst.0, worst.1));
         }
         let Some(limit) = self.written("chord_error:") else { return false };
-        if worst.0.max(told) > limit * 1.001 {
-            found.push(format!("{} off at {}, and {limit} is allowed", worst.0.max(told), worst.1));
+        if worst.0.max(reported) > limit * 1.001 {
+            found.push(format!("{} off at {}, and {limit} is allowed", worst.0.max(reported), worst.1));
         }
         true
     }

@@ -1,4 +1,4 @@
-//! The distance between mesh and surface: the largest of 25 points a triangle (`samples.rs`).
+//! The distance between mesh and surface: the largest of 25 points a triangle, climbed from (`samples.rs`).
 //!
 //! Triangles of which bounds of second derivatives say that they are no farther from the surface than one that was measured are left out:
 //! the largest distance is the same. Grids are bounded by blocks of cells (`measure_grid.rs`), other faces triangle by triangle.
@@ -11,13 +11,14 @@ use crate::mesh::data::face_geometry::{FaceGeometry, FaceNodes};
 use crate::mesh::deviation::bend_tiles::BendTiles;
 use crate::mesh::deviation::measure_grid::{GridList, GridMeasure};
 use crate::mesh::deviation::quadratic::over_sides;
-use crate::mesh::deviation::samples::{Farthest, beside_pole, bounded, follow, of_triangle};
+use crate::mesh::deviation::samples::{Farthest, Largest, beside_pole, bounded, of_triangle};
 use crate::surface::{Evaluator, Surface};
 
 /// What steers the measurement.
 struct MeasureSettings {
-    /// Triangles that one thread measures at a time.
+    /// Triangles that one thread measures at a time, and such batches until the farthest are followed.
     batch: usize,
+    batches: usize,
     /// Triangles that are measured first: those with the largest bounds. Each time more as many times follow.
     first: usize,
     growth: usize,
@@ -30,7 +31,7 @@ struct MeasureSettings {
 }
 
 const SETTINGS: MeasureSettings =
-    MeasureSettings { batch: 1024, first: 64, growth: 4, min_triangles: 256, triangles_a_tile: 32, max_tiles: 64 };
+    MeasureSettings { batch: 1024, batches: 64, first: 64, growth: 4, min_triangles: 256, triangles_a_tile: 32, max_tiles: 64 };
 
 /// Largest distance of a face's elements from its surface, model units; `triangles` are those of the face.
 pub fn of_face(surface: &Surface, geometry: &FaceGeometry, triangles: &[[u32; 3]], nodes: &[DVec3], tolerance: &Tolerance) -> f64 {
@@ -90,24 +91,26 @@ impl ListedTriangles<'_> {
     fn largest(&self) -> f64 {
         let count = self.halves.len();
         if count < SETTINGS.min_triangles {
-            return self.measured((0..count as u32).collect::<Vec<_>>().as_slice(), 0.0);
+            let mut largest = Largest::new();
+            self.measure(&(0..count as u32).collect::<Vec<_>>(), &mut largest);
+            return largest.climbed(self.evaluator);
         }
         let bounds = self.bounds();
         let mut order: Vec<u32> = (0..count as u32).collect();
         let larger = |a: &u32, b: &u32| bounds[*b as usize].total_cmp(&bounds[*a as usize]).then(a.cmp(b));
-        let (mut most, mut take) = (0.0, SETTINGS.first);
+        let (mut most, mut take) = (Largest::new(), SETTINGS.first);
         while !order.is_empty() {
             if take < order.len() {
                 order.select_nth_unstable_by(take, larger);
             }
             let rest = order.split_off(take.min(order.len()));
             order.sort_unstable();
-            most = self.measured(&order, most);
+            self.measure(&order, &mut most);
             order = rest;
-            order.retain(|k| bounds[*k as usize] > most);
+            order.retain(|k| bounds[*k as usize] > most.distance);
             take *= SETTINGS.growth;
         }
-        most
+        most.climbed(self.evaluator)
     }
 
     /// How far each triangle may be from the surface, model units; infinite where nothing is known.
@@ -139,17 +142,19 @@ impl ListedTriangles<'_> {
         batches.into_iter().flatten().collect()
     }
 
-    /// The largest distance of some triangles, or `known` if that is larger.
-    fn measured(&self, triangles: &[u32], known: f64) -> f64 {
+    /// Takes some triangles into the largest distance.
+    fn measure(&self, triangles: &[u32], largest: &mut Largest) {
         let point = |(u, v)| self.evaluator.point(u, v);
         let of_half = |k: &u32| {
             let half = self.halves[*k as usize];
             let at = beside_pole(self.evaluator, half.map(|n| self.uv[n]));
             bounded(self.evaluator, of_triangle(&point, at, half.map(|n| self.nodes[self.ids[n] as usize])))
         };
-        let batches: Vec<Vec<Farthest>> = par::map(triangles.len().div_ceil(SETTINGS.batch), |batch| {
-            triangles[batch * SETTINGS.batch..].iter().take(SETTINGS.batch).map(of_half).collect()
-        });
-        follow(self.evaluator, batches.into_iter().flatten().collect(), known, self.tolerance)
+        for lot in triangles.chunks(SETTINGS.batch * SETTINGS.batches) {
+            let batches: Vec<Vec<Farthest>> = par::map(lot.len().div_ceil(SETTINGS.batch), |batch| {
+                lot[batch * SETTINGS.batch..].iter().take(SETTINGS.batch).map(of_half).collect()
+            });
+            largest.follow(self.evaluator, batches.into_iter().flatten().collect(), self.tolerance);
+        }
     }
 }

@@ -13,7 +13,7 @@ use crate::base::range::Interval3;
 use crate::base::tolerance::Tolerance;
 use crate::mesh::deviation::bend_tiles::along_normal;
 use crate::mesh::deviation::quadratic::over_sides;
-use crate::mesh::deviation::samples::{Farthest, SIX, beside_pole, follow, middle, of_triangle, off, peak, weights};
+use crate::mesh::deviation::samples::{Farthest, Largest, SIX, beside_pole, middle, of_triangle, off, peak, weighted, weights};
 use crate::mesh::mapped::grid::{Grid, GridIds, triangle_rows};
 use crate::surface::Surface;
 use crate::surface::core::power_form::Bends;
@@ -131,22 +131,23 @@ impl<'a> GridMeasure<'a> {
         }
         rim.dedup();
         let measured = par::map(rim.len(), |k| self.measured(rim[k]));
-        let mut most = follow(self.surface.evaluator(), measured.into_iter().flatten().collect(), 0.0, self.tolerance);
+        let mut most = Largest::new();
+        most.follow(self.surface.evaluator(), measured.into_iter().flatten().collect(), self.tolerance);
         let mut queue = BinaryHeap::new();
         if nu > 2 && nv > 2 {
             queue.push(BoundedBlock(f64::INFINITY, CellBlock { i: inner_u, j: inner_v }));
         }
-        while queue.peek().is_some_and(|block| block.0 > most) {
+        while queue.peek().is_some_and(|block| block.0 > most.distance) {
             let lot: Vec<CellBlock> =
-                std::iter::from_fn(|| queue.pop()).take(SETTINGS.at_once).filter(|b| b.0 > most).map(|b| b.1).collect();
+                std::iter::from_fn(|| queue.pop()).take(SETTINGS.at_once).filter(|b| b.0 > most.distance).map(|b| b.1).collect();
             for examined in par::map(lot.len(), |k| self.examined(lot[k])) {
                 match examined {
-                    Examined::Measured(farthest) => most = follow(self.surface.evaluator(), farthest, most, self.tolerance),
+                    Examined::Measured(farthest) => most.follow(self.surface.evaluator(), farthest, self.tolerance),
                     Examined::Halved(halves) => queue.extend(halves),
                 }
             }
         }
-        most
+        most.climbed(self.surface.evaluator())
     }
 
     fn examined(&self, block: CellBlock) -> Examined {
@@ -294,9 +295,9 @@ impl GridCorners {
         // Corners of the cell in sixths.
         let corner = [(0, 0), (SIX, 0), (SIX, SIX), (0, SIX)];
         let [a, b, c] = half.map(|k| corner[k]);
-        let [pa, pb, pc] = half.map(|k| nodes[self.ids[k] as usize]);
-        let normal = (pb - pa).cross(pc - pa).normalize_or_zero();
-        let mut seen = Farthest { seems: -1.0, p: pa, uv: self.places[0] };
+        let corners = half.map(|k| nodes[self.ids[k] as usize]);
+        let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero();
+        let mut seen = Farthest::corner(corners, half.map(|k| self.places[k]));
         let place = |x: f64, y: f64| {
             let (s, t) = (x / SIX as f64, y / SIX as f64);
             let [q0, q1, _, q3] = self.places;
@@ -306,20 +307,21 @@ impl GridCorners {
         for (wa, wb, wc) in weights() {
             let x = (a.0 * wa + b.0 * wb + c.0 * wc) / SIX;
             let y = (a.1 * wa + b.1 * wb + c.1 * wc) / SIX;
-            let p = (pa * wa as f64 + pb * wb as f64 + pc * wc as f64) / SIX as f64;
+            let w = [wa, wb, wc].map(|n| n as f64 / SIX as f64);
+            let p = weighted(corners, w);
             let there = fine[y * width + x];
             if let Some(k) = middle([wa, wb, wc]) {
                 middles[k] = (there - p).dot(normal);
             }
             let seems = off(p, there, normal);
             if seems > seen.seems {
-                seen = Farthest { seems, p, uv: place(x as f64, y as f64) };
+                seen = Farthest { seems, weights: w, uv: place(x as f64, y as f64), ..seen };
             }
         }
         if let Some((seems, w)) = peak(middles).filter(|(seems, _)| *seems > seen.seems) {
             let along = |a: usize, b: usize, c: usize| a as f64 * w[0] + b as f64 * w[1] + c as f64 * w[2];
             let uv = place(along(a.0, b.0, c.0), along(a.1, b.1, c.1));
-            seen = Farthest { seems, p: pa * w[0] + pb * w[1] + pc * w[2], uv };
+            seen = Farthest { seems, weights: w, uv, ..seen };
         }
         seen
     }
