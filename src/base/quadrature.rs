@@ -131,12 +131,12 @@ fn running_matrix() -> Vec<[f64; RUNNING]> {
         .collect()
 }
 
-/// Value and derivative of Σ cₖ Tₖ(x) at x in −1…1, by Clenshaw's recurrence and its derivative.
+/// Value and derivative of Σ cₖ Tₖ(x) at x in −1…1, by Clenshaw's recurrence and its derivative; at least one coefficient.
 #[inline]
-pub fn chebyshev(c: &[f64; RUNNING], x: f64) -> (f64, f64) {
+pub fn chebyshev(c: &[f64], x: f64) -> (f64, f64) {
     let (mut b1, mut b2, mut d1, mut d2) = (0.0, 0.0, 0.0, 0.0);
     let twice = 2.0 * x;
-    for k in (1..RUNNING).rev() {
+    for k in (1..c.len()).rev() {
         (d1, d2) = (2.0 * b1 + twice * d1 - d2, d1);
         (b1, b2) = (c[k] + twice * b1 - b2, b1);
     }

@@ -35,6 +35,10 @@ pub(crate) struct Lengths {
 struct Inside {
     /// Chebyshev coefficients; 0 at x = −1.
     length: [f64; RUNNING],
+    /// How many of them are more than rounding.
+    terms: usize,
+    /// A bound of the second derivative of the length by x.
+    bend: f64,
     /// Cubic guess of x from the share y = 0…1 of the panel's length: end slopes dx/dy, kept monotone.
     slopes: (f64, f64),
 }
@@ -92,7 +96,8 @@ impl Lengths {
             if speed * 6.0 > panel.integral { panel.integral / speed } else { 6.0 }
         };
         let slopes = (slope(-1.0), slope(1.0));
-        self.inside.push(Inside { length, slopes });
+        let (terms, bend) = (terms_of(&length, EPSILON * panel.integral), bend_of(&length));
+        self.inside.push(Inside { length, terms, bend, slopes });
         self.t.push(b);
         self.s.push(done + panel.integral);
     }
@@ -115,7 +120,7 @@ impl Lengths {
         let (a, b) = (self.t[k], self.t[k + 1]);
         let share = (t - a) / (b - a);
         let inside = match self.inside.get(k) {
-            Some(panel) => chebyshev(&panel.length, 2.0 * share - 1.0).0,
+            Some(panel) => panel.length_and_speed(2.0 * share - 1.0).0,
             None => share * (self.s[k + 1] - self.s[k]),
         };
         (self.s[k] + inside).clamp(self.s[k], self.s[k + 1])
@@ -164,7 +169,27 @@ impl Lengths {
     }
 }
 
+/// Chebyshev coefficients up to the last ones that together are less than `rounding`; at least two.
+fn terms_of(c: &[f64], rounding: f64) -> usize {
+    let mut dropped = 0.0;
+    let small = c.iter().rev().take_while(|c| {
+        dropped += c.abs();
+        dropped <= rounding
+    });
+    (c.len() - small.count()).max(2)
+}
+
+/// A bound of the second derivative of Σ cₖ Tₖ over −1…1: |Tₖ″| is largest at the ends, k² (k² − 1) / 3.
+fn bend_of(c: &[f64]) -> f64 {
+    c.iter().enumerate().map(|(k, c)| c.abs() * ((k * k * (k * k).saturating_sub(1)) as f64 / 3.0)).sum()
+}
+
 impl Inside {
+    /// Length up to x, and its derivative by x.
+    fn length_and_speed(&self, x: f64) -> (f64, f64) {
+        chebyshev(&self.length[..self.terms], x)
+    }
+
     /// x where the length inside the panel is `wanted`, share `y` of the whole.
     fn invert(&self, wanted: f64, y: f64, accuracy: f64) -> f64 {
         let (p, q) = (self.slopes.0 - 2.0, self.slopes.1 - 2.0);
@@ -173,11 +198,12 @@ impl Inside {
         let mut x = 2.0 * y - 1.0 + y * z * (p * z - q * y);
         let (mut low, mut high) = (-1.0, 1.0);
         for _ in 0..ROUNDS {
-            let (value, slope) = chebyshev(&self.length, x);
+            let (value, slope) = self.length_and_speed(x);
             let miss = value - wanted;
-            let next = x - miss / slope;
-            if miss.abs() <= accuracy {
-                // The step is at hand and squares what error is left.
+            let step = miss / slope;
+            let next = x - step;
+            // What a step leaves is half of the second derivative times its square.
+            if miss.abs() <= accuracy || 0.5 * self.bend * step * step <= accuracy && low <= next && next <= high {
                 return if low <= next && next <= high { next } else { x };
             }
             if miss > 0.0 {
