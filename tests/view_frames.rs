@@ -341,6 +341,8 @@ param height = 3m
 curve post = line((0, 0, 0), (0, 0, height))
 curve beam = line((0, 0, height), (4, 0, height))
 surface panel = ruled(line((0, 0, 0), (4, 0, 0)), beam)
+fn stay(x: length) = line((x, 0, 0), (x, 0, height))
+surface bays for k in 0..2 = move(panel, (0, k * 1m, 0))
 ";
 
 const HALL: &str = "units m
@@ -361,6 +363,14 @@ mesh m of floor { size: 1m }
 point corner = (1, 2, 3)
 surface moved = move(floor, (0, 0, 1))
 surface copies for k in 0..2 = move(bay.panel, (0, 5m * (k + 1), 0))
+curve stay = bay.stay(1m)
+surface second = bay.bays[1]
+curve chosen = if 2 > 1 then rib(9m) else plain
+curve raised for c in pairs = move(c, (0, 0, 1))
+group posts of bay.post, stay
+surface between for i in 0..2 = ruled(ribs[i], ribs[i + 1])
+mesh fine of copies { size: 1m }
+surface walls = [ruled(bay.post, bay.stay(4m)), panel]
 ";
 
 /// Each thing leads to the lines that a person would name: its own first, then the functions and modules that its declaration names.
@@ -387,6 +397,14 @@ fn things_lead_to_their_lines() {
         ("corner", "16"),
         ("moved", "17"),
         ("copies[1]", "18 2 bay 5"),
+        ("stay", "19 2 bay 6"),
+        ("second", "20 2 bay 7"),
+        ("chosen", "21 3"),
+        ("raised[1]", "22"),
+        ("posts", "23 2 bay 3"),
+        ("between[0]", "24"),
+        ("fine", "25"),
+        ("walls[0]", "26 2 bay 3 bay 6"),
     ];
     let found: Vec<(&str, String)> = expected.iter().map(|(name, _)| (*name, chain(name))).collect();
     assert_eq!(found, expected.map(|(name, lines)| (name, lines.to_owned())));

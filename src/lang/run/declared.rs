@@ -170,18 +170,19 @@ impl Cx<'_> {
         }
     }
 
-    /// The declaration of a module that an expression asks for: `panel` of `bay.panel`.
-    fn asked_of(&self, declaration: Option<&Declaration>, used: usize) -> Option<Stretch> {
-        let module = self.machine.at(self.loaded_by(ModuleId::MAIN, used as u32)?);
-        let bound = self.machine.modules.first()?.script.declarations.bound(used)?;
-        let nodes = &declaration?.nodes;
+    /// The declarations of a module that an expression asks for, the last first: `panel` of `bay.panel`, `stay` of `bay.stay(1m)`.
+    fn asked_of(&self, declaration: Option<&Declaration>, used: usize) -> Vec<Stretch> {
+        let bound = self.machine.modules.first().and_then(|main| main.script.declarations.bound(used));
+        let (Some(module), Some(bound), Some(declaration)) = (self.loaded_by(ModuleId::MAIN, used as u32), bound, declaration) else {
+            return Vec::new();
+        };
+        let (module, nodes) = (self.machine.at(module), &declaration.nodes);
         let is_module = |id: &ExprId| matches!(nodes.get(id.index()).map(|n| &n.expr), Some(Expr::Name(name)) if *name == bound.name);
-        let asked = nodes.iter().find_map(|node| match &node.expr {
-            Expr::Field { of, name, .. } if is_module(of) => Some(*name),
+        let asked = nodes.iter().rev().filter_map(|node| match &node.expr {
+            Expr::Field { of, name, .. } | Expr::Call { of: Some(of), name, .. } if is_module(of) => module.find(*name),
             _ => None,
         });
-        let index = module.find(asked?)?;
-        Some((module.file, module.script.declarations.span(index as usize)))
+        asked.map(|index| (module.file, module.script.declarations.span(index as usize))).collect()
     }
 
     /// The params of the main script, in order of writing.
