@@ -17,7 +17,8 @@ use serde_json::{Value, json};
 /// How long anything may take on a loaded machine.
 const PATIENCE: Duration = Duration::from_secs(20);
 
-/// Says what it is given. Lines of the script tell what it does: `reads FILE`, `takes MILLISECONDS`, `buffer BYTES`, `panics`.
+/// Says what it is given. Lines of the script tell what it does: `reads FILE`, `takes MILLISECONDS`, `buffer BYTES`, `panics`, `more`: what
+/// it is compared with takes until it is asked again.
 struct Echo {
     folder: PathBuf,
     stopped: Arc<AtomicUsize>,
@@ -75,8 +76,9 @@ impl Model for Echo {
             }
         }
         let json = json!({ "loft": 1, "number": request.number, "text": text, "sets": request.sets, "read": read,
-            "chord_error": request.chord_error, "compare": format!("{:?}", request.compare), "diagnostics": [] });
-        Evaluated { frame: Some(Frame { json: json.to_string(), buffers }), files: Some(files) }
+            "chord_error": request.chord_error, "compare": format!("{:?}", request.compare), "again": request.again, "diagnostics": [] });
+        let more = text.contains("more") && request.compare.is_some() && !request.again;
+        Evaluated { frame: Some(Frame { json: json.to_string(), buffers }), files: Some(files), more }
     }
 }
 
@@ -665,6 +667,24 @@ fn two_hundred_saves_in_ten_seconds() {
     let numbers = numbers.join().unwrap();
     assert!(numbers.is_sorted_by(|a, b| a < b));
     assert!(numbers.len() > 3, "{} frames", numbers.len());
+}
+
+#[test]
+fn a_model_is_shown_before_what_it_is_compared_with() {
+    let view = View::new("more", Some("more\n"));
+    let mut tab = view.tab("a", 0);
+    assert_eq!(tab.frame(), 2);
+    view.post("compare", &json!({ "with": "golden" }));
+    assert_eq!([tab.frame(), tab.frame()], [4, 6]);
+    let frame = view.get("frame").json();
+    assert_eq!((frame["number"].as_u64(), frame["again"].as_bool()), (Some(6), Some(true)));
+    // A save between is shown first as well.
+    view.save("more of it\n");
+    assert_eq!([tab.frame(), tab.frame()], [8, 10]);
+    let frame = view.frame_of("more of it\n");
+    assert_eq!((frame["number"].as_u64(), frame["again"].as_bool()), (Some(10), Some(true)));
+    thread::sleep(Duration::from_millis(200));
+    assert_eq!(view.get("frame").json()["number"].as_u64(), Some(10), "nothing comes after it");
 }
 
 #[test]

@@ -62,9 +62,8 @@ impl Viewing {
 
     /// Opens the page once more.
     pub fn open(&self, terminal: &Terminal) {
-        let address = self.server.address();
-        terminal.print(&format!("{address}\n"));
-        open(&address);
+        terminal.print(&format!("{}\n", self.server.address()));
+        open(&self.server);
     }
 
     /// Shows the session as it is now.

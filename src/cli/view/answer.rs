@@ -29,12 +29,13 @@ pub struct Answer {
     gzip: bool,
     keep: Keep,
     allow: Option<&'static str>,
+    location: Option<String>,
 }
 
 impl Answer {
     /// An answer with a body of some media type.
     pub fn new(media: &'static str, body: Vec<u8>) -> Self {
-        Self { status: 200, media, body: Arc::new(body), gzip: false, keep: Keep::Never, allow: None }
+        Self { status: 200, media, body: Arc::new(body), gzip: false, keep: Keep::Never, allow: None, location: None }
     }
 
     /// A JSON value.
@@ -57,6 +58,11 @@ impl Answer {
     /// A refusal, with a sentence for whoever reads it.
     pub fn refusal(status: u16, words: &str) -> Self {
         Self::new("text/plain; charset=utf-8", format!("{words}\n").into_bytes()).with_status(status)
+    }
+
+    /// What was asked for is at another path.
+    pub fn redirect(path: String) -> Self {
+        Self { status: 303, location: Some(path), ..Self::new("text/plain; charset=utf-8", Vec::new()) }
     }
 
     /// There is nothing to send.
@@ -91,6 +97,9 @@ impl Answer {
         if let Some(methods) = self.allow {
             head += &format!("Allow: {methods}\r\n");
         }
+        if let Some(path) = &self.location {
+            head += &format!("Location: {path}\r\n");
+        }
         head += if close { "Connection: close\r\n\r\n" } else { "Connection: keep-alive\r\n\r\n" };
         head
     }
@@ -106,6 +115,7 @@ fn start(status: u16, keep: Keep) -> String {
         100 => "Continue",
         200 => "OK",
         204 => "No Content",
+        303 => "See Other",
         400 => "Bad Request",
         403 => "Forbidden",
         404 => "Not Found",

@@ -75,17 +75,17 @@ fn serve(model: ShownModel, script: &Path, sets: Vec<(String, String)>, matches:
         Ok(server) => server,
         Err(error) => return terminal.wrong_usage(&error.to_string()),
     };
-    let address = server.address();
-    terminal.print(&format!("{address}\n"));
+    terminal.print(&format!("{}\n", server.address()));
     if !matches.get_flag("no-open") {
-        open(&address);
+        open(&server);
     }
     server.run(move || job.go_on().is_err());
     Exit::Interrupted
 }
 
-/// Opens an address in the user's browser; where there is none the address was printed.
-pub fn open(address: &str) {
+/// Opens the page in the user's browser; where that cannot be, its address was printed.
+pub fn open(server: &Server) {
+    let Ok(address) = server.address_for_once() else { return };
     let (program, arguments): (&str, &[&str]) = if cfg!(target_os = "macos") {
         ("open", &[])
     } else if cfg!(windows) {

@@ -3,8 +3,12 @@
 //! A page from elsewhere that the browser shows can send requests to the loopback interface. It is told apart by the name it calls the
 //! server by (`Host`, which also refuses names that were made to point here), by where it comes from (`Origin`, `Sec-Fetch-Site`) and by
 //! the token in the address, which it cannot know.
+//!
+//! The arguments of a program can be read by all users of the machine, so a browser is not given the token but a key that opens the page
+//! once: who comes second is refused.
 
 use std::fmt::Write;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use super::answer::Answer;
 use super::http::Head;
@@ -14,20 +18,19 @@ use super::http::Head;
 pub struct Gate {
     port: u16,
     token: String,
+    /// Keys that were not used.
+    keys: Arc<Mutex<Vec<String>>>,
 }
+
+/// Where keys are used, in place of a token.
+const OPEN: &str = "open";
 
 impl Gate {
     /// A gate with a token from the system's random source.
     ///
     /// Fails when the system has none.
     pub fn new(port: u16) -> Result<Self, getrandom::Error> {
-        let mut bytes = [0; 16];
-        getrandom::fill(&mut bytes)?;
-        let mut token = String::new();
-        for byte in bytes {
-            let _ = write!(token, "{byte:02x}");
-        }
-        Ok(Self { port, token })
+        Ok(Self { port, token: random()?, keys: Arc::default() })
     }
 
     /// The address of the page.
@@ -35,9 +38,19 @@ impl Gate {
         format!("http://127.0.0.1:{}/{}/", self.port, self.token)
     }
 
+    /// An address that leads to the page, for the first who asks.
+    ///
+    /// Fails when the system has no random numbers.
+    pub fn address_for_once(&self) -> Result<String, getrandom::Error> {
+        let key = random()?;
+        let address = format!("http://127.0.0.1:{}/{OPEN}/{key}", self.port);
+        self.keys.lock().unwrap_or_else(PoisonError::into_inner).push(key);
+        Ok(address)
+    }
+
     /// The rest of the path behind the token.
     ///
-    /// Fails with the refusal of a request that is not let in.
+    /// Fails with the answer to a request that is not let in: a refusal, or for a key the way to the page.
     pub fn admit<'a>(&self, head: &'a Head) -> Result<&'a str, Answer> {
         let host = head.header("host").unwrap_or_default().to_ascii_lowercase();
         if ![format!("127.0.0.1:{}", self.port), format!("localhost:{}", self.port), format!("[::1]:{}", self.port)].contains(&host) {
@@ -48,6 +61,9 @@ impl Gate {
         }
         let mut parts = head.path.strip_prefix('/').unwrap_or_default().splitn(2, '/');
         let (token, rest) = (parts.next().unwrap_or_default(), parts.next());
+        if let (OPEN, Some(key), true) = (token, rest, head.method == "GET" && (from_here(head) || opened(head))) {
+            return Err(self.way(key));
+        }
         if !same(token.as_bytes(), self.token.as_bytes()) {
             return Err(Answer::refusal(403, "the address lacks the token; open the one that `loft view` printed last"));
         }
@@ -57,6 +73,29 @@ impl Gate {
         }
         rest.ok_or_else(|| Answer::refusal(404, "nothing is here; the address of the page ends in `/`"))
     }
+
+    /// The way to the page for a key, which is used up.
+    fn way(&self, key: &str) -> Answer {
+        let mut keys = self.keys.lock().unwrap_or_else(PoisonError::into_inner);
+        match keys.iter().position(|known| same(known.as_bytes(), key.as_bytes())) {
+            Some(k) => {
+                keys.swap_remove(k);
+                Answer::redirect(format!("/{}/", self.token))
+            }
+            None => Answer::refusal(403, "this address opened the page before; open the one that `loft view` printed last"),
+        }
+    }
+}
+
+/// 128 bits of the system's random source as letters.
+fn random() -> Result<String, getrandom::Error> {
+    let mut bytes = [0; 16];
+    getrandom::fill(&mut bytes)?;
+    let mut letters = String::new();
+    for byte in bytes {
+        let _ = write!(letters, "{byte:02x}");
+    }
+    Ok(letters)
 }
 
 /// The request comes from the page itself, from the user, or from a program that is no browser.
@@ -82,7 +121,7 @@ mod tests {
     const TOKEN: &str = "00112233445566778899aabbccddeeff";
 
     fn check(request: &str, expected: Result<&str, u16>) {
-        let gate = Gate { port: 7357, token: TOKEN.to_owned() };
+        let gate = Gate { port: 7357, token: TOKEN.to_owned(), keys: Arc::default() };
         let head = parse_head(request.replace("TOKEN", TOKEN).replace('\n', "\r\n").as_bytes()).unwrap();
         assert_eq!(gate.admit(&head).map_err(|answer| answer.status), expected, "{request}");
     }
@@ -120,5 +159,24 @@ mod tests {
         check(&format!("GET /TOKEN/frame {from}: navigate"), Err(403));
         check(&format!("GET /TOKEN/ {from}: no-cors"), Err(403));
         check(&format!("POST /TOKEN/ {from}: navigate"), Err(403));
+    }
+
+    #[test]
+    fn a_key_leads_to_the_page_once() {
+        let gate = Gate::new(7357).unwrap();
+        let (one, other) = (gate.address_for_once().unwrap(), gate.address_for_once().unwrap());
+        let status = |address: &str, rest: &str| {
+            let path = address.strip_prefix("http://127.0.0.1:7357").unwrap();
+            let head = parse_head(format!("GET {path} HTTP/1.1\r\n{rest}").as_bytes()).unwrap();
+            gate.admit(&head).map_err(|answer| (answer.status, answer.head(true))).unwrap_err()
+        };
+        let here = "Host: 127.0.0.1:7357";
+        assert_eq!(status(&one, "Host: evil.example:7357").0, 403);
+        assert_eq!(status(&one, &format!("{here}\r\nSec-Fetch-Site: cross-site\r\nSec-Fetch-Mode: no-cors")).0, 403);
+        assert_eq!(status(&format!("{one}0"), here).0, 403);
+        let (code, head) = status(&one, here);
+        assert!(code == 303 && head.contains(&format!("\r\nLocation: /{}/\r\n", gate.token)), "{head}");
+        assert_eq!([status(&one, here).0, status(&other, here).0, status(&other, here).0], [403, 303, 403]);
+        assert!(!one.contains(&gate.token));
     }
 }

@@ -46,6 +46,8 @@ pub struct Request {
     pub chord_error: Option<f64>,
     /// What to lay over the model.
     pub compare: Option<Compare>,
+    /// The model was shown before its comparison was made, which is to be made now.
+    pub again: bool,
 }
 
 /// What an evaluation gave.
@@ -56,6 +58,8 @@ pub struct Evaluated {
     /// The files that it read or looked for in vain, besides the script: a change of one of them asks for a new evaluation. `None`: as
     /// before.
     pub files: Option<Vec<PathBuf>>,
+    /// What the model is compared with has to be made first: the same is to be evaluated again, with [`Request::again`].
+    pub more: bool,
 }
 
 /// What the page shows.

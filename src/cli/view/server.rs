@@ -104,6 +104,13 @@ impl Server {
         self.shared.gate.address()
     }
 
+    /// An address for the arguments of a browser, which others on the machine can read: it leads to the page once.
+    ///
+    /// Fails when the system has no random numbers.
+    pub fn address_for_once(&self) -> Result<String, StartError> {
+        self.shared.gate.address_for_once().map_err(|error| StartError::Random(error.to_string()))
+    }
+
     /// The port that it listens at.
     pub fn port(&self) -> u16 {
         self.port
@@ -218,6 +225,7 @@ fn evaluate(shared: &Arc<Shared>, mut model: Box<dyn Model>) {
         }));
         // What a panic leaves behind is the model's business: the next evaluation finds it.
         let evaluated = catch_unwind(AssertUnwindSafe(|| model.evaluate(&request, &running.evaluation)));
+        let more = evaluated.as_ref().is_ok_and(|evaluated| evaluated.more);
         let frame = match evaluated {
             Ok(evaluated) => {
                 if let Some(files) = evaluated.files {
@@ -229,6 +237,9 @@ fn evaluate(shared: &Arc<Shared>, mut model: Box<dyn Model>) {
         };
         if frame.is_some_and(|frame| shared.frames.publish(running.number, frame)) {
             shared.events.frame(running.number);
+        }
+        if more {
+            shared.work.again();
         }
         if !shared.work.is_due() {
             end_partial(shared);

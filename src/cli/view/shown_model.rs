@@ -38,6 +38,14 @@ struct OtherState {
     chord_error: Option<f64>,
 }
 
+/// What there is of another state.
+enum Other {
+    Made(frame::Compare),
+    /// It would have to be made.
+    Missing,
+    Stopped,
+}
+
 /// A job that the server may stop and ask.
 struct WatchedJob(Arc<Job>);
 
@@ -79,33 +87,37 @@ impl ShownModel {
         Ok(view.map(|view| (packed(&view), view.frame.ok)))
     }
 
-    /// The state to compare with, under the same params; `None` when it was stopped.
-    fn other(&mut self, compare: &Compare, wanted: &Wanted, job: &Job) -> Option<frame::Compare> {
+    /// The state to compare with, under the same params; made only where it `may` be.
+    fn other(&mut self, compare: &Compare, wanted: &Wanted, job: &Job, may: bool) -> Other {
         let with = match compare {
             Compare::Golden => "golden".to_owned(),
             Compare::Revision(name) => format!("revision:{name}"),
         };
-        let failed = |why: String| Some(frame::Compare { with: with.clone(), things: Vec::new(), failed: Some(why) });
+        let failed = |why: String| Other::Made(frame::Compare { with: with.clone(), things: Vec::new(), failed: Some(why) });
         let revision = match self.revision(compare) {
             Ok(revision) => revision,
             Err(why) => return failed(why),
         };
         let state = OtherState { revision, sets: wanted.sets.clone(), chord_error: wanted.chord_error };
         if self.other.as_ref().is_none_or(|(known, _)| *known != state) {
+            if !may {
+                return Other::Missing;
+            }
             let text = match state.revision.text(&self.script) {
                 Ok(text) => text,
                 Err(why) => return failed(why),
             };
             match self.at_revision(&state.revision, &Wanted { text, ..wanted.clone() }, job) {
-                Ok(view) => self.other = Some((state, view?)),
+                Ok(Some(view)) => self.other = Some((state, view)),
+                Ok(None) => return Other::Stopped,
                 Err(bug) => return failed(bug.what),
             }
         }
-        let frame = &self.other.as_ref()?.1.frame;
+        let Some((_, View { frame, .. })) = &self.other else { return Other::Stopped };
         let error = frame.diagnostics.iter().find(|said| said.severity == "error");
         match error {
             Some(error) if frame.things.is_empty() => failed(format!("the script of then is wrong today: {}", error.message)),
-            _ => Some(frame::Compare { with, things: frame.things.clone(), failed: None }),
+            _ => Other::Made(frame::Compare { with, things: frame.things.clone(), failed: None }),
         }
     }
 
@@ -157,14 +169,21 @@ impl Model for ShownModel {
             Ok(None) => return Evaluated::default(),
             Err(bug) => after_bug(request.number, self.viewer.last().clone(), &self.name, &bug),
         };
+        let mut more = false;
         if let Some(compare) = &request.compare {
-            let Some(other) = self.other(compare, &wanted, &job) else { return Evaluated::default() };
-            if let (None, Some((_, other))) = (&other.failed, &self.other) {
-                view.buffers.extend(other.buffers.iter().map(|(key, buffer)| (key.clone(), buffer.clone())));
+            match self.other(compare, &wanted, &job, request.again) {
+                Other::Made(other) => {
+                    if let (None, Some((_, other))) = (&other.failed, &self.other) {
+                        view.buffers.extend(other.buffers.iter().map(|(key, buffer)| (key.clone(), buffer.clone())));
+                    }
+                    view.frame.compare = Some(other);
+                }
+                // The model is seen before what it is compared with is made.
+                Other::Missing => more = true,
+                Other::Stopped => return Evaluated::default(),
             }
-            view.frame.compare = Some(other);
         }
-        Evaluated { frame: Some(packed(&view)), files: Some(self.viewer.files().to_vec()) }
+        Evaluated { frame: Some(packed(&view)), files: Some(self.viewer.files().to_vec()), more }
     }
 }
 

@@ -120,6 +120,15 @@ impl Work {
         self.change(false, |state| state.wanted.compare = with);
     }
 
+    /// The model of a request was shown before its comparison, which follows unless something changed.
+    pub fn again(&self) {
+        let mut state = self.state();
+        if !state.is_due() {
+            state.wanted.again = true;
+            state.changes += 1;
+        }
+    }
+
     /// Stops the running evaluation; the next one starts when something changes.
     pub fn stop(&self) {
         self.state().stop();
@@ -155,7 +164,9 @@ impl Work {
         let (number, started) = (state.wanted.number, Instant::now());
         let running = Arc::new(Running { number, evaluation: Evaluation::default(), started, announced: AtomicBool::new(false) });
         state.running = Some(running.clone());
-        Some((state.wanted.clone(), running))
+        let request = state.wanted.clone();
+        state.wanted.again = false;
+        Some((request, running))
     }
 
     /// The evaluation has ended. `tell` is called with what the pages must know of that, where they know that it ran.
@@ -198,6 +209,7 @@ impl Work {
     fn change(&self, save: bool, change: impl FnOnce(&mut State)) {
         let mut state = self.state();
         change(&mut state);
+        state.wanted.again = false;
         state.changes += 1;
         let short = state.running.as_ref().is_some_and(|running| running.started.elapsed() < SHORT);
         if save || !short {
