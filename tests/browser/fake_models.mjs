@@ -4,7 +4,7 @@ import { curve, mesh, points, surface } from './fake_buffers.mjs';
 
 const place = (line, column = 1, label = null, end = column + 8) => ({ file: 0, line, column, end_line: line, end_column: end, label });
 
-function thing(name, kind, buffers, line, more = {}) {
+export function thing(name, kind, buffers, line, more = {}) {
   return {
     name,
     kind,

@@ -24,15 +24,8 @@ test('on first open shapes come before the rest, and nothing is said of success'
     }
     assert.equal(await page.locator('[data-key="section checks"]').count(), 0);
     await picture(page, 'page-partial');
-    const before = await camera(page);
-    const whole = roof(2, { rise: 0.8 });
-    whole.frame.box = [
-      [-9, -9, -9],
-      [9, 9, 9],
-    ];
-    fake.show(whole);
+    fake.show(roof(2, { rise: 0.8 }));
     await ready(page, 2);
-    assert.deepEqual(await camera(page), before);
     assert.equal(await page.title(), '● roof.loft');
     assert.match(await text(page, '#status .time'), /made in 4 ms/);
     await tab(page, 'checks');
@@ -40,6 +33,69 @@ test('on first open shapes come before the rest, and nothing is said of success'
     assert.equal(await page.locator('#pane-checks').getAttribute('aria-busy'), 'false');
     assert.match(await page.locator('.line[data-line="10"]').getAttribute('title'), /rise > 1m/);
   });
+});
+
+/** A frame whose model reaches farther than its shapes. */
+function wider(model) {
+  model.frame.box = [
+    [-9, -9, -9],
+    [9, 9, 9],
+  ];
+  return model;
+}
+
+test('the camera is fitted again where the rest of the first evaluation is larger than its shapes, and never after', async () => {
+  await over(partial(roof(1)), async ({ page, fake }) => {
+    const shapes = await camera(page);
+    fake.show(wider(roof(2)));
+    await ready(page, 2);
+    const whole = await camera(page);
+    assert.ok(whole.height > 2 * shapes.height, `${whole.height} after ${shapes.height}`);
+    assert.deepEqual(whole.target, [0, 0, 0]);
+    const larger = wider(roof(3, { rise: 2 }));
+    larger.frame.box[1] = [90, 90, 90];
+    fake.show(larger);
+    await ready(page, 3);
+    assert.deepEqual(await camera(page), whole);
+  });
+});
+
+test('the camera is fitted again while it still flies to the shapes', async () => {
+  await over(
+    partial(roof(1)),
+    async ({ page, fake }) => {
+      const shapes = await camera(page);
+      fake.show(partial(wider(roof(2))));
+      await ready(page, 2);
+      fake.show(wider(roof(3)));
+      await ready(page, 3);
+      await page.waitForTimeout(500);
+      assert.ok((await camera(page)).height > 2 * shapes.height);
+    },
+    { reducedMotion: 'no-preference' },
+  );
+});
+
+test('a camera that was moved, or that the address brings, is not fitted again', async () => {
+  await over(partial(roof(1)), async ({ page, fake }) => {
+    await page.locator('#picture').focus();
+    await page.keyboard.press('ArrowLeft');
+    const moved = await camera(page);
+    fake.show(wider(roof(2)));
+    await ready(page, 2);
+    assert.deepEqual(await camera(page), moved);
+  });
+  const hash = '#view=0.5,0.4,12,1,2,3';
+  await over(
+    partial(roof(1)),
+    async ({ page, fake }) => {
+      fake.show(wider(roof(2)));
+      await ready(page, 2);
+      const { height, target } = await camera(page);
+      assert.deepEqual([height, target], [12, [1, 2, 3]]);
+    },
+    { hash },
+  );
 });
 
 test('a mesh that is still to be made is listed in grey, and its surface stays in shades of meshes', async () => {

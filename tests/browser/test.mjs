@@ -5,5 +5,7 @@ import './picture.mjs';
 import './panes.mjs';
 import './frames.mjs';
 import './partial.mjs';
+import './comparison.mjs';
+import './extremes.mjs';
 import './meshes.mjs';
 import './program.mjs';

@@ -26,7 +26,6 @@ class Buffer {
       }
     } else throw new Error(`a buffer of role ${this.role}`);
     if (this.role === 'faces') this.index = arrays.triangles;
-    if (this.index?.length > 0) this.growTree();
   }
 
   /** The number of a face or element for a triangle. */
@@ -83,6 +82,7 @@ export class Buffers {
   constructor() {
     this.held = new Map();
     this.coming = new Map();
+    this.treeless = []; // Buffers with triangles whose trees are not asked for yet.
     this.fetched = 0; // Bytes over the wire since the page was opened.
   }
 
@@ -97,7 +97,9 @@ export class Buffers {
             fetchBytes(key)
               .then((bytes) => {
                 this.fetched += bytes.byteLength;
-                this.held.set(key, new Buffer(key, bytes));
+                const buffer = new Buffer(key, bytes);
+                this.held.set(key, buffer);
+                if (buffer.index?.length > 0) this.treeless.push(buffer);
               })
               .finally(() => this.coming.delete(key)),
           );
@@ -119,6 +121,15 @@ export class Buffers {
       buffer.dispose();
       this.held.delete(key);
     }
+  }
+
+  /** Has the missing trees made once the picture, which does not need them, is on the screen. */
+  growTreesSoon() {
+    if (this.treeless.length === 0) return;
+    const now = this.treeless.splice(0);
+    setTimeout(() => {
+      for (const buffer of now) if (!buffer.gone) buffer.growTree();
+    });
   }
 
   bytes() {

@@ -97,7 +97,7 @@ export function rayThrough(view, aspect, x, y) {
 
 /** Zooms by a factor so that the point under the cursor stays there. */
 export function zoomed(view, factor, aspect, x, y, point = null) {
-  const height = Math.min(Math.max(view.height * factor, 1e-9), 1e12);
+  const height = Math.min(Math.max(view.height * factor, 1e-13), 1e12);
   const real = height / view.height;
   const held = point ?? rayThrough(view, aspect, x, y).point;
   return { ...view, height, target: view.target.map((t, i) => held[i] + (t - held[i]) * real) };

@@ -50,8 +50,9 @@ export function createControl(app, byId) {
     },
     help: () => (byId('help').open ? byId('help').close() : byId('help').showModal()),
     theme: () => state.set({ theme: document.documentElement.dataset.theme === 'dark' ? 'light' : 'dark' }),
-    left: () => state.set({ left: !state.get().left }),
-    right: () => state.set({ right: !state.get().right }),
+    // `left` and `right` are views.
+    tree: () => state.set({ left: !state.get().left }),
+    tables: () => state.set({ right: !state.get().right }),
   };
 
   function run(name) {

@@ -73,7 +73,7 @@ export function shortNumber(value, digits = 5) {
 
 /** A coordinate, rounded to what a buffer of a model of this size holds. */
 export function coordinate(value, radius) {
-  const places = Math.max(0, Math.min(12, 6 - Math.ceil(Math.log10(Math.max(radius, 1e-9)))));
+  const places = Math.max(0, Math.min(16, 6 - Math.ceil(Math.log10(Math.max(radius, 1e-12)))));
   const text = value.toFixed(places);
   return text.includes('.') ? text.replace(/0+$/, '').replace(/\.$/, '').replace(/^-0$/, '0') : text;
 }

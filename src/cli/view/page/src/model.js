@@ -12,6 +12,8 @@ export class Model {
     this.state = state;
     this.buffers = new Buffers();
     this.frame = null;
+    this.byName = new Map();
+    this.fitted = null; // The camera that was fitted to shapes, while the first evaluation runs.
     this.whole = null; // The last frame whose evaluation had ended.
     this.drawings = [];
     this.compared = []; // Drawings of the other state of the model.
@@ -21,6 +23,7 @@ export class Model {
     this.leaving = [];
     stage.after.push(() => {
       for (const drawing of this.leaving.splice(0)) drawing.dispose();
+      this.buffers.growTreesSoon();
     });
   }
 
@@ -33,8 +36,8 @@ export class Model {
     const keys = keysOf(frame);
     await this.buffers.load(keys, (key) => server.buffer(key));
     if (turn !== this.newest) return false;
-    const first = !this.frame || !this.stage.box;
     this.frame = frame;
+    this.byName = new Map(frame.things.map((thing) => [thing.name, thing]));
     if (!frame.partial) this.whole = frame;
     if (this.stage.setBox(frame.partial ? grown(this.stage.box, frame.box) : frame.box)) this.moved = true;
     this.drawings = this.renew(this.drawings, frame.things);
@@ -42,8 +45,20 @@ export class Model {
     for (const drawing of this.compared) drawing.ghost = true;
     // What a partial frame leaves out may come again with the whole one.
     this.buffers.keep(frame.partial && this.whole ? [...keys, ...keysOf(this.whole)] : keys);
-    if (first && frame.box && !this.state.get().view) this.stage.fit();
+    this.fitFirst(frame);
     return true;
+  }
+
+  /**
+   * Fits the camera to the first frame, and again where the rest of the first evaluation is larger than the shapes that came
+   * before it. A camera that somebody moved, or that the address brought, stays.
+   */
+  fitFirst(frame) {
+    const { view } = this.state.get();
+    const isOwn = this.fitted !== null && (view === this.fitted.view || Boolean(this.stage.flight));
+    if (frame.box && (!view || (isOwn && !isWithin(this.stage.box, this.fitted.box))))
+      this.fitted = { view: this.stage.fit(), box: this.stage.box };
+    if (!frame.partial) this.fitted = null;
   }
 
   /** Keeps drawings whose thing still has the same buffer, makes the new ones and drops the rest. */
@@ -86,7 +101,7 @@ export class Model {
   }
 
   thing(name) {
-    return this.frame?.things.find((thing) => thing.name === name) ?? null;
+    return this.byName.get(name) ?? null;
   }
 
   /** Whether a thing is shown: as a person said, else as the shade and the frame say. */
@@ -148,6 +163,8 @@ export const isAwaited = (thing) => Boolean(thing.pending) && !(thing.buffers?.l
 
 const keysOf = ({ things, compare }) =>
   [...things, ...(compare?.things ?? [])].flatMap((thing) => (thing.buffers ?? []).map((buffer) => buffer.key));
+
+const isWithin = (box, other) => [0, 1, 2].every((i) => box[0][i] >= other[0][i] && box[1][i] <= other[1][i]);
 
 /** While an evaluation runs the box only grows, so that depth and section do not jump. */
 function grown(old, box) {

@@ -1,6 +1,7 @@
 // The page: puts the parts together. A frame comes in, the picture and the panes change, the state stays.
 
 import { navigate } from './navigation.js';
+import { Comparison } from './compare.js';
 import { createControl } from './control.js';
 import { createLegend } from './legend.js';
 import { axes, Marks } from './marks.js';
@@ -39,17 +40,21 @@ export function startPage() {
   const app = { state, stage, model, section, shades };
   app.selection = new Selection(app);
   app.control = createControl(app, byId);
+  app.comparison = new Comparison(app);
 
   app.server = connect({
     onFrame: (frame, times) => takeFrame(frame, times),
-    onWork: (event) => app.status.work(event),
+    onWork: (event) => app.status.work(event, app.comparison.running),
     onGone: ({ file }) => app.control.tell(`${file} is not there now; the picture stays as it was.`),
     onCursor: ({ file, line }) => app.control.lightLine(file, line),
     onConnection(connected) {
       app.connected = connected;
       app.status.connection(connected, app.server?.live ?? true);
-      if (!connected) app.status.work(null);
-      else if (!model.frame) app.control.tell('The script is evaluated; the picture comes when it is done.');
+      if (!connected) {
+        app.status.work(null);
+        app.comparison.end();
+      }
+      if (connected && !model.frame) app.control.tell('The script is evaluated; the picture comes when it is done.');
     },
   });
   app.setParam = throttled(async (name, text) => {
@@ -59,7 +64,10 @@ export function startPage() {
   app.refine = throttled((name, error) => app.server.post(name, { error }));
   app.show = throttled((name, place) => app.server.post('show', place));
 
-  app.status = createStatus(byId('status'), byId('work'), () => app.server.post('stop'));
+  app.status = createStatus(byId('status'), byId('work'), () => {
+    app.server.post('stop');
+    if (app.comparison.running) app.comparison.ask(null);
+  });
   app.legend = createLegend(byId('legend'), (range) => {
     shades.setBrush(range);
     app.recolor();
@@ -73,12 +81,8 @@ export function startPage() {
       state.set({ shade: name });
     },
     cut: (patch) => state.set({ cut: { axis: 'x', share: 0.5, flip: false, ...state.get().cut, ...patch } }),
-    async compare(other) {
-      const answer = await app.server.post('compare', { with: other });
-      if (answer.ok !== false) return;
-      app.control.tell(`Nothing to compare with: ${answer.message ?? 'the server refused'}.`, 5);
-      app.toolbar.update();
-    },
+    compare: (other) => app.comparison.ask(other),
+    compared: () => app.comparison.shown,
     live: app.server.live,
   });
   byId('view').append(app.toolbar.bar);
@@ -139,7 +143,8 @@ export function startPage() {
       if (!frame.partial) app.control.tell(`Frame ${frame.number} could not be shown: ${error.message}`);
       return;
     }
-    app.control.settle();
+    if (!app.comparison.said) app.control.settle();
+    app.comparison.took(frame);
     app.selection.renew();
     document.title = `${frame.partial ? '… ' : frame.ok ? '' : '● '}${frame.title}`;
     app.recolor();

@@ -136,6 +136,24 @@ export function createPanes(app, byId) {
     });
   }
 
+  const results = {}; // What the panes of results show, as text.
+
+  /** Makes those panes anew that would show something else. */
+  function drawResults(frame) {
+    const { diagnostics, checks, reports, pictures, outputs, units, sources } = frame;
+    const files = sources.map(({ file }) => file);
+    const draw = (name, shown, run) => {
+      const next = JSON.stringify(frame.evaluating ? null : shown);
+      if (results[name] === next) return;
+      results[name] = next;
+      if (frame.evaluating) panes[name].replaceChildren(element('p', { class: 'empty', text: 'Evaluating…' }));
+      else run(panes[name], frame, { diagnostic: control.openDiagnostic, check: control.openCheck, goTo: control.goTo });
+    };
+    draw('problems', [diagnostics, files, units], drawProblems);
+    draw('checks', checks, drawChecks);
+    draw('reports', [reports, pictures, outputs], drawReports);
+  }
+
   const drawTree = soon(() => tree.draw());
   const splitter = byId('splitter');
   const widen = (width) => {
@@ -166,13 +184,7 @@ export function createPanes(app, byId) {
       script.setFrame(frame);
       params.setFrame(frame);
       for (const name of RESULTS) panes[name].setAttribute('aria-busy', String(Boolean(frame.partial)));
-      if (frame.evaluating) {
-        for (const name of RESULTS) panes[name].replaceChildren(element('p', { class: 'empty', text: 'Evaluating…' }));
-      } else {
-        drawProblems(panes.problems, frame, { diagnostic: control.openDiagnostic, goTo: control.goTo });
-        drawChecks(panes.checks, frame, { check: control.openCheck });
-        drawReports(panes.reports, frame, { goTo: control.goTo });
-      }
+      drawResults(frame);
       drawPicked();
       const errors = frame.diagnostics.filter((d) => d.severity === 'error').length;
       const failed = frame.checks.filter((check) => !check.pass).length;

@@ -10,6 +10,7 @@ export function createScriptPane(holder, on) {
   let frame = null;
   let shown = 0;
   let chain = [];
+  let drawn = []; // The lines that are in the document, each as its text and its node.
   const picker = element('select', {
     'aria-label': 'Source file',
     onchange: () => {
@@ -19,6 +20,10 @@ export function createScriptPane(holder, on) {
   });
   const chainList = element('ol', { class: 'chain', hidden: true, 'aria-label': 'Lines that made it' });
   const lines = element('div', { class: 'code', role: 'list', tabindex: '0', 'aria-label': 'Script' });
+  lines.addEventListener('click', ({ target }) => {
+    const number = target.closest('.line')?.dataset.line;
+    if (number) on.line(shown, Number(number));
+  });
   holder.append(element('div', { class: 'files' }, picker), chainList, lines);
 
   function setFrame(next) {
@@ -51,24 +56,37 @@ export function createScriptPane(holder, on) {
         marks.set(check.place.line, { severity: 'error', code: 'check', message: `${check.text} — found ${check.found ?? 'otherwise'}` });
     const texts = (source?.text ?? '').split('\n');
     lines.style.setProperty('--digits', String(texts.length).length);
-    lines.replaceChildren(
-      ...texts.map((text, i) => {
-        const mark = marks.get(i + 1);
-        return element(
-          'div',
-          {
-            class: `line ${mark?.severity ?? ''}`,
-            role: 'listitem',
-            dataset: { line: String(i + 1) },
-            title: mark ? `${mark.code}: ${mark.message}` : null,
-            onclick: () => on.line(shown, i + 1),
-          },
-          element('span', { class: 'number', text: String(i + 1) }),
-          element('code', {}, coloured(text)),
-        );
-      }),
-    );
+    putLines(texts);
+    drawn.forEach(({ node }, i) => {
+      const mark = marks.get(i + 1);
+      const [kind, title] = [`line ${mark?.severity ?? ''}`, mark ? `${mark.code}: ${mark.message}` : ''];
+      if (node.className !== kind) node.className = kind;
+      if (node.title !== title) node.title = title;
+    });
     light();
+  }
+
+  /** Puts lines into the place of those that are there; what is the same at the start and at the end stays. */
+  function putLines(texts) {
+    const least = Math.min(drawn.length, texts.length);
+    let start = 0;
+    while (start < least && drawn[start].text === texts[start]) start++;
+    let end = 0; // Counted from the end.
+    while (end < least - start && drawn[drawn.length - 1 - end].text === texts[texts.length - 1 - end]) end++;
+    const made = texts.slice(start, texts.length - end).map((text) => ({
+      text,
+      node: element('div', { role: 'listitem' }, element('span', { class: 'number' }), element('code', {}, coloured(text))),
+    }));
+    const kept = drawn.slice(drawn.length - end);
+    for (const { node } of drawn.slice(start, drawn.length - end)) node.remove();
+    const added = document.createDocumentFragment();
+    added.append(...made.map(({ node }) => node));
+    lines.insertBefore(added, kept[0]?.node ?? null);
+    drawn = [...drawn.slice(0, start), ...made, ...kept];
+    drawn.forEach(({ node }, i) => {
+      const number = String(i + 1);
+      if (node.dataset.line !== number) node.dataset.line = node.firstChild.textContent = number;
+    });
   }
 
   function coloured(text) {

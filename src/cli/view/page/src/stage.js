@@ -69,9 +69,12 @@ export class Stage {
     return true;
   }
 
+  /** Moves the camera so that a box is seen whole; gives the view that it moves to. */
   fit(box = this.box, direction = {}) {
-    if (!box) return;
-    this.flyTo(fitted({ ...this.view, ...direction }, box, this.aspect));
+    if (!box) return null;
+    const view = fitted({ ...this.view, ...direction }, box, this.aspect);
+    this.flyTo(view);
+    return view;
   }
 
   /** Moves to a view in a quarter of a second, or at once where a person wants no motion. */

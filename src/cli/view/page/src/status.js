@@ -37,10 +37,11 @@ export function createStatus(holder, work, onStop) {
       time.textContent = `made in ${shortNumber(frame.seconds * 1000, 3)} ms · shown in ${Math.round(times.shown - times.heard)} ms`;
       time.title = 'Evaluation of the script; from the news of the frame to its picture';
     },
-    work(event) {
+    /** `comparing` tells that the other state of a comparison is awaited. */
+    work(event, comparing = false) {
       work.hidden = !event || event.phase === null || event.phase === undefined;
       if (work.hidden) return;
-      phase.textContent = `${event.phase}${event.of ? ` ${event.done} of ${event.of}` : ''}${event.seconds > 0.5 ? ` · ${event.seconds.toFixed(1)} s` : ''}`;
+      phase.textContent = `${comparing ? 'Comparing: ' : ''}${event.phase}${event.of ? ` ${event.done} of ${event.of}` : ''}${event.seconds > 0.5 ? ` · ${event.seconds.toFixed(1)} s` : ''}`;
       if (event.of) meter.value = event.done / event.of;
       else meter.removeAttribute('value');
     },

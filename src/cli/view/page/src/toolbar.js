@@ -4,7 +4,7 @@ import { button, element, icon } from './dom.js';
 import { SHADES } from './shades.js';
 
 /** `run(command)` does what a key does too; gives `update()`, which shows the state. */
-export function createToolbar(holder, state, model, { run, shade, cut, compare, live }) {
+export function createToolbar(holder, state, model, { run, shade, cut, compare, compared, live }) {
   const shades = element(
     'select',
     { id: 'shade', 'aria-label': 'Shade', onchange: () => shade(shades.value) },
@@ -28,8 +28,8 @@ export function createToolbar(holder, state, model, { run, shade, cut, compare, 
       ['revision:HEAD', 'with the last commit'],
     ].map(([value, text]) => element('option', { value, text })),
   );
-  const left = button('Tree', 'left', () => run('left'), { 'aria-pressed': 'true' });
-  const right = button('Script and tables', 'right', () => run('right'), { 'aria-pressed': 'true' });
+  const left = button('Tree', 'left', () => run('tree'), { 'aria-pressed': 'true' });
+  const right = button('Script and tables', 'right', () => run('tables'), { 'aria-pressed': 'true' });
   const name = element('h1', { text: 'loft' });
   const group = (label, ...parts) => element('div', { class: 'group', role: 'group', 'aria-label': label }, parts);
   holder.append(
@@ -91,7 +91,7 @@ export function createToolbar(holder, state, model, { run, shade, cut, compare, 
     left.setAttribute('aria-pressed', String(now.left));
     right.setAttribute('aria-pressed', String(now.right));
     name.textContent = model.frame?.title ?? 'loft';
-    const withWhat = model.frame?.compare?.with ?? '';
+    const withWhat = compared();
     if (![...others.options].some((option) => option.value === withWhat))
       others.append(element('option', { value: withWhat, text: withWhat }));
     others.value = withWhat;

@@ -16,11 +16,15 @@ const SECTIONS = [
 
 /** `on` has `toggle(thing, shown)`, `color(thing, text)`, `isolate(name)`, `choose(thing)`, `goTo(place)`, `zoom(names)`, `hover(name)`. */
 export function createTree(holder, search, model, state, on) {
+  let drawn = ''; // What the tree shows, as text.
   search.addEventListener('input', draw);
 
   function draw() {
     const { frame } = model;
     if (!frame) return;
+    const next = content(frame);
+    if (next === drawn) return;
+    drawn = next;
     const focused = document.activeElement?.closest?.('[role=treeitem]')?.dataset.key;
     const wanted = search.value.trim().toLowerCase();
     const fits = (text) => !wanted || text.toLowerCase().includes(wanted);
@@ -56,6 +60,18 @@ export function createTree(holder, search, model, state, on) {
     const again = rows.find((row) => row.dataset.key === focused);
     (again ?? rows[0])?.setAttribute('tabindex', '0');
     if (again) again.focus();
+  }
+
+  /** All that `draw` reads; where it is as before, the rows stay. */
+  function content(frame) {
+    const { checks, reports, pictures, outputs, partial } = frame;
+    const { colors, only, closed } = state.get();
+    const things = frame.things.map((thing) => {
+      const { name, kind, of, color, unmade, stale } = thing;
+      return [name, kind, of, color, unmade, stale, isAwaited(thing), model.isShown(thing), on.isChosen(name), on.isLit(name)];
+    });
+    const named = reports.map(({ name, title }) => [name, title]);
+    return JSON.stringify([things, checks, named, pictures, outputs, Boolean(partial), colors, only, closed, search.value, theme.dark]);
   }
 
   function section(key, title, items) {
