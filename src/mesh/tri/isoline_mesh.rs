@@ -4,6 +4,7 @@
 pub mod beside;
 pub mod corners;
 pub mod cut;
+pub mod flips;
 pub mod summary;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -173,17 +174,20 @@ impl IsolineMesher<'_> {
         }
         let (all, kept) = self.triangulated(&triangulation, &sure)?;
         let sure: BTreeSet<[u32; 3]> = sure.into_iter().map(sorted).collect();
-        let bad = self.beside(&triangulation, &all, &kept, &sure);
+        triangulation.size = vec![self.input.size; triangulation.p.len()];
+        let mut triangulation = Triangulation::new(triangulation.p, triangulation.xy, triangulation.size, triangulation.fixed, &all, &kept);
+        let of = |c: &[u32; 3]| if sure.contains(&sorted(*c)) { None } else { self.ratio_beside(&triangulation, *c) };
+        let mut ratios: Vec<Option<LimitRatios>> = triangulation.tri.iter().map(of).collect();
+        self.flip_over(&mut triangulation, &mut ratios);
+        let bad = self.beside(&triangulation, &ratios);
         if self.worst.is_some() {
             if bad.is_empty() {
                 return Err(self.missed());
             }
             return self.cut(bad).map(|()| None);
         }
-        triangulation.size = vec![self.input.size; triangulation.p.len()];
         let tally = self.tally(&corners);
         let decided = self.decided(&corners, &triangulation);
-        let mut triangulation = Triangulation::new(triangulation.p, triangulation.xy, triangulation.size, triangulation.fixed, &all, &kept);
         lock(&mut triangulation, outline);
         triangulation.lift_flat();
         Ok(Some(IsolineMesh { triangulation, tally, decided }))

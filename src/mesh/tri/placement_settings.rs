@@ -256,6 +256,8 @@ pub(crate) struct IsolineSettings {
     pub(crate) min_cell_share: f64,
     /// Distance of the surface from a triangle without area, as a share of its longest side, from which on it wraps round.
     pub(crate) max_flat_offset: f64,
+    /// Largest number of flips beside borders in one round, over that of the triangles.
+    pub(crate) max_flips: usize,
     /// Largest number of rounds of cutting.
     pub(crate) max_rounds: usize,
     /// Work of a cell in one round, in evaluations of the surface: all are sorted and traversed anew.
@@ -275,12 +277,13 @@ pub(crate) const ISOLINES: IsolineSettings = IsolineSettings {
     max_closed_share: 0.35,
     max_pole_share: 0.6,
     side_pieces: 4,
-    cut_work: 2,
+    cut_work: 16,
     curves_per_cut_work: 4,
     min_border_distance: 0.3,
     max_side_ratio: 1.5,
     min_cell_share: 0.25,
     max_flat_offset: 0.25,
+    max_flips: 4,
     max_rounds: 64,
     cell_work: 20,
     node_work: 8,

@@ -10,7 +10,7 @@ use crate::mesh::chart::outline::inside;
 use crate::mesh::deviation::poles::from_pole;
 use crate::mesh::tri::isoline::Cut;
 use crate::mesh::tri::isoline_mesh::{Failure, IsolineMesher, IsolineResult};
-use crate::mesh::tri::limit_table;
+use crate::mesh::tri::limit_table::LimitRatios;
 use crate::mesh::tri::no_mesh::NoMesh;
 use crate::mesh::tri::placement_settings::ISOLINES;
 use crate::mesh::tri::tree::Class;
@@ -34,28 +34,13 @@ impl IsolineMesher<'_> {
     }
 
     /// Cells to cut for triangles beside borders that exceed the limits.
-    pub(crate) fn beside(
-        &mut self,
-        triangulation: &Triangulation,
-        all: &Triangles,
-        kept: &[bool],
-        sure: &BTreeSet<[u32; 3]>,
-    ) -> Vec<(u32, Cut)> {
+    pub(crate) fn beside(&mut self, triangulation: &Triangulation, ratios: &[Option<LimitRatios>]) -> Vec<(u32, Cut)> {
         self.worst = None;
         let mut bad: BTreeMap<u32, Cut> = BTreeMap::new();
-        for t in (0..kept.len()).filter(|t| kept[*t]) {
+        for (t, ratio) in ratios.iter().enumerate() {
             job::poll();
-            let c = all.corners[t];
-            // At a pole the chart has edges that are points in space, and lines of the surface run into it: a triangle on such an edge,
-            // or with its corners on such a line, is dropped.
-            let flat = self.is_flat(triangulation, c);
-            let wraps = flat && self.wraps(triangulation, c);
-            if sure.contains(&sorted(c)) || flat && !wraps {
-                continue;
-            }
-            let ratio = limit_table::ratio_of_long(self.input.chart, triangulation, c, self.input.limits, &self.normals);
-            let long = wraps || self.too_long(triangulation, c, all.given[t]);
-            if ratio.worst() <= 1.0 && !long {
+            let (c, Some(ratio)) = (triangulation.tri[t], *ratio) else { continue };
+            if ratio.worst() <= 1.0 && !self.too_long(triangulation, c, triangulation.locked[t]) {
                 continue;
             }
             let uv = c.map(|n| DVec2::from(self.input.chart.uv(triangulation.xy[n as usize])));
@@ -87,7 +72,7 @@ impl IsolineMesher<'_> {
     }
 
     /// Whether the corners of a triangle lie on a straight line, within the tolerance.
-    fn is_flat(&self, triangulation: &Triangulation, c: [u32; 3]) -> bool {
+    pub(crate) fn is_flat(&self, triangulation: &Triangulation, c: [u32; 3]) -> bool {
         let [a, b, d] = c.map(|n| triangulation.p[n as usize]);
         let longest = a.distance(b).max(b.distance(d)).max(d.distance(a));
         (b - a).cross(d - a).length() <= self.input.point * longest
@@ -95,7 +80,7 @@ impl IsolineMesher<'_> {
 
     /// Whether the surface between the places of a triangle without area is far from the line of its corners, by more than a share
     /// of its length and than the chord error: they are on both sides of a seam, or in several poles.
-    fn wraps(&self, triangulation: &Triangulation, c: [u32; 3]) -> bool {
+    pub(crate) fn wraps(&self, triangulation: &Triangulation, c: [u32; 3]) -> bool {
         let chart = self.input.chart;
         let places = c.map(|n| DVec2::from(chart.uv(triangulation.xy[n as usize])));
         let columns = from_pole(&|at| chart.tangents(at.into()), places);

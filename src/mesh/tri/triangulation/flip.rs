@@ -118,7 +118,7 @@ impl Triangulation {
     }
 
     /// The corner against side `k` of a triangle, its ends, and the corner beyond it.
-    fn round_side(&self, t: u32, k: usize) -> (u32, u32, u32, u32) {
+    pub fn round_side(&self, t: u32, k: usize) -> (u32, u32, u32, u32) {
         let c = self.tri[t as usize];
         let other = self.across[t as usize][k];
         (c[k], c[(k + 1) % 3], c[(k + 2) % 3], self.tri[other as usize][self.side_to(other, t)])
