@@ -123,6 +123,16 @@ fn no_point_of_a_triangle_is_farther_than_the_reported_chord_error() {
     }
 }
 
+/// A body of revolution with a waist: sides beside its seam lay across the bends, and cells were cut for them until the work was spent.
+#[test]
+fn a_waist_is_meshed_between_isolines() {
+    let mesh = mesh(
+        "units mm\nsurface s = revolve(spline([(0, 0, -50), (30, 0, -20), (3, 0, 0), (40, 0, 30), (0, 0, 50)]), axis: line((0, 0, 0), (0, 0, 1)))
+mesh m of s { size: 2000  method: isoline  angle_error: 20deg }",
+    );
+    assert!((500..2000).contains(&mesh.nodes.len()), "{} nodes", mesh.nodes.len());
+}
+
 /// A spline through seven points that wave by up to `high` about the line from (0, y, 0) to (100, y, 0).
 fn wave(random: &mut Random, y: f64, high: f64) -> String {
     let points: Vec<String> = (0..7)

@@ -100,7 +100,7 @@ fn net(seed: usize, settings: &str) -> Model {
 /// eight to twelve holes.
 const SHARES: [(f64, f64); 10] = [
     (0.64, 0.26),
-    (0.76, 0.24),
+    (0.76, 0.245),
     (1.27, 0.5),
     (0.92, 0.31),
     (0.46, 0.1),

@@ -370,7 +370,9 @@ curve raised for c in pairs = move(c, (0, 0, 1))
 group posts of bay.post, stay
 surface between for i in 0..2 = ruled(ribs[i], ribs[i + 1])
 mesh fine of copies { size: 1m }
-surface walls = [ruled(bay.post, bay.stay(4m)), panel]
+let walls = [ruled(bay.post, bay.stay(4m)), panel]
+fn through(x: length) = bay.stay(x)
+surface faced = ruled(through(4m), bay.post)
 ";
 
 /// Each thing leads to the lines that a person would name: its own first, then the functions and modules that its declaration names.
@@ -405,6 +407,7 @@ fn things_lead_to_their_lines() {
         ("between[0]", "24"),
         ("fine", "25"),
         ("walls[0]", "26 2 bay 3 bay 6"),
+        ("faced", "28 27 2 bay 6 bay 3"),
     ];
     let found: Vec<(&str, String)> = expected.iter().map(|(name, _)| (*name, chain(name))).collect();
     assert_eq!(found, expected.map(|(name, lines)| (name, lines.to_owned())));

@@ -272,8 +272,8 @@ impl<'a> Seen<'a> {
             }
             worst = if off.0 > worst.0 { off } else { worst };
         }
-        // What is reported comes from climbing in four triangles from 25 places of all, and is nothing where it is nothing but rounding.
-        if worst.0 > reported * 1.03 + ON * self.size {
+        // What is reported comes from climbing in four triangles from 25 places of all, which misses some per cent where others lean on a sharp bend, and is nothing where it is nothing but rounding.
+        if worst.0 > reported * 1.06 + ON * self.size {
             found.push(format!("{} off at {}, and {reported} is reported", worst.0, worst.1));
         }
         let Some(limit) = self.written("chord_error:") else { return false };

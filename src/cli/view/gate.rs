@@ -5,10 +5,11 @@
 //! the token in the address, which it cannot know.
 //!
 //! The arguments of a program can be read by all users of the machine, so a browser is not given the token but a key that opens the page
-//! once: who comes second is refused.
+//! once, within a minute: who comes second is refused, and the user sees that somebody came first.
 
 use std::fmt::Write;
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 use super::answer::Answer;
 use super::http::Head;
@@ -18,12 +19,15 @@ use super::http::Head;
 pub struct Gate {
     port: u16,
     token: String,
-    /// Keys that were not used.
-    keys: Arc<Mutex<Vec<String>>>,
+    /// Keys that were not used, and when they were made.
+    keys: Arc<Mutex<Vec<(String, Instant)>>>,
 }
 
 /// Where keys are used, in place of a token.
 const OPEN: &str = "open";
+
+/// How long a key opens the page.
+const KEY_LIFE: Duration = Duration::from_secs(60);
 
 impl Gate {
     /// A gate with a token from the system's random source.
@@ -44,7 +48,7 @@ impl Gate {
     pub fn address_for_once(&self) -> Result<String, getrandom::Error> {
         let key = random()?;
         let address = format!("http://127.0.0.1:{}/{OPEN}/{key}", self.port);
-        self.keys.lock().unwrap_or_else(PoisonError::into_inner).push(key);
+        self.keys.lock().unwrap_or_else(PoisonError::into_inner).push((key, Instant::now()));
         Ok(address)
     }
 
@@ -77,12 +81,13 @@ impl Gate {
     /// The way to the page for a key, which is used up.
     fn way(&self, key: &str) -> Answer {
         let mut keys = self.keys.lock().unwrap_or_else(PoisonError::into_inner);
-        match keys.iter().position(|known| same(known.as_bytes(), key.as_bytes())) {
+        keys.retain(|(_, made)| made.elapsed() < KEY_LIFE);
+        match keys.iter().position(|(known, _)| same(known.as_bytes(), key.as_bytes())) {
             Some(k) => {
                 keys.swap_remove(k);
                 Answer::redirect(format!("/{}/", self.token))
             }
-            None => Answer::refusal(403, "this address opened the page before; open the one that `loft view` printed last"),
+            None => Answer::refusal(403, "this address opens the page once, within a minute; open the one that `loft view` printed last"),
         }
     }
 }

@@ -238,7 +238,7 @@ fn evaluate(shared: &Arc<Shared>, mut model: Box<dyn Model>) {
         if frame.is_some_and(|frame| shared.frames.publish(running.number, frame)) {
             shared.events.frame(running.number);
         }
-        if more {
+        if more && !running.evaluation.is_stopped() {
             shared.work.again();
         }
         if !shared.work.is_due() {

@@ -100,13 +100,13 @@ impl ShownModel {
         };
         let state = OtherState { revision, sets: wanted.sets.clone(), chord_error: wanted.chord_error };
         if self.other.as_ref().is_none_or(|(known, _)| *known != state) {
-            if !may {
-                return Other::Missing;
-            }
             let text = match state.revision.text(&self.script) {
                 Ok(text) => text,
                 Err(why) => return failed(why),
             };
+            if !may {
+                return Other::Missing;
+            }
             match self.at_revision(&state.revision, &Wanted { text, ..wanted.clone() }, job) {
                 Ok(Some(view)) => self.other = Some((state, view)),
                 Ok(None) => return Other::Stopped,

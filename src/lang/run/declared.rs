@@ -160,8 +160,9 @@ impl Cx<'_> {
     fn named_by(&self, declaration: usize, symbols: &[Symbol], seen: &mut BTreeSet<usize>, made: &mut Vec<Stretch>) {
         let Some(main) = self.machine.modules.first() else { return };
         for needed in symbols.get(declaration).map_or(&[][..], |symbol| &symbol.needs) {
-            let Some(symbol) = symbols.get(*needed).filter(|_| seen.insert(*needed)) else { continue };
+            let Some(symbol) = symbols.get(*needed) else { continue };
             match symbol.keyword {
+                Keyword::Fn if !seen.insert(*needed) => continue,
                 Keyword::Fn => self.named_by(*needed, symbols, seen, made),
                 Keyword::Use => made.extend(self.asked_of(main.script.declarations.get(declaration).as_deref(), *needed)),
                 _ => continue,

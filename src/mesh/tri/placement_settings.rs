@@ -244,8 +244,11 @@ pub(crate) struct IsolineSettings {
     pub(crate) max_pole_share: f64,
     /// Number of pieces by which the side of a cell is measured.
     pub(crate) side_pieces: usize,
-    /// Work of a cell that is cut because it is too large by itself, in elements.
-    pub(crate) cut_work: u64,
+    /// Work of a cell that is cut because it is too large by itself, in elements: of the first cells, and of those beyond, where a limit that
+    /// cannot be kept would be cut for without end.
+    pub(crate) cut_work: (u64, u64),
+    /// Number of cells that count as the first.
+    pub(crate) first_cells: usize,
     /// Number of curves of which a point of the surface is made for which a cell is charged as much again.
     pub(crate) curves_per_cut_work: usize,
     /// Least distance of a node from a border that it is not on, as a share of the cells round it.
@@ -256,7 +259,7 @@ pub(crate) struct IsolineSettings {
     pub(crate) min_cell_share: f64,
     /// Distance of the surface from a triangle without area, as a share of its longest side, from which on it wraps round.
     pub(crate) max_flat_offset: f64,
-    /// Largest number of flips beside borders in one round, over that of the triangles.
+    /// Largest number of flips beside borders in one round for each triangle.
     pub(crate) max_flips: usize,
     /// Largest number of rounds of cutting.
     pub(crate) max_rounds: usize,
@@ -277,7 +280,8 @@ pub(crate) const ISOLINES: IsolineSettings = IsolineSettings {
     max_closed_share: 0.35,
     max_pole_share: 0.6,
     side_pieces: 4,
-    cut_work: 16,
+    cut_work: (16, 2),
+    first_cells: 16_000,
     curves_per_cut_work: 4,
     min_border_distance: 0.3,
     max_side_ratio: 1.5,

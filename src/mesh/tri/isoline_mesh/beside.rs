@@ -40,7 +40,8 @@ impl IsolineMesher<'_> {
         for (t, ratio) in ratios.iter().enumerate() {
             job::poll();
             let (c, Some(ratio)) = (triangulation.tri[t], *ratio) else { continue };
-            if ratio.worst() <= 1.0 && !self.too_long(triangulation, c, triangulation.locked[t]) {
+            let is_long = || self.is_flat(triangulation, c) || self.too_long(triangulation, c, triangulation.locked[t]);
+            if ratio.worst() <= 1.0 && !is_long() {
                 continue;
             }
             let uv = c.map(|n| DVec2::from(self.input.chart.uv(triangulation.xy[n as usize])));

@@ -21,7 +21,7 @@ impl IsolineMesher<'_> {
     /// Cuts leaves, and theirs, until each is no longer than allowed and keeps the limits by itself.
     pub(crate) fn settle(&mut self, mut open: Vec<u32>) -> IsolineResult<()> {
         let (across, along) = self.input.chart.surface().curves_of_a_point();
-        let work = ISOLINES.cut_work * (1 + (across + along) / ISOLINES.curves_per_cut_work) as u64;
+        let of_curves = (1 + (across + along) / ISOLINES.curves_per_cut_work) as u64;
         while let Some(k) = open.pop() {
             job::poll();
             if self.cells.n_whole() > self.input.most || self.cells.all().len() > 8 * self.input.most {
@@ -31,8 +31,10 @@ impl IsolineMesher<'_> {
                 continue;
             }
             if let Some((cut, why)) = self.demand(k)? {
-                allow(work, &mut 0);
                 let first = self.cells.all().len() as u32;
+                let (generous, usual) = ISOLINES.cut_work;
+                let work = if (first as usize) < ISOLINES.first_cells { generous } else { usual };
+                allow(work * of_curves, &mut 0);
                 self.cells.split(k, cut, why);
                 open.extend([first + 1, first]);
             }

@@ -10,19 +10,17 @@ use crate::mesh::tri::placement_settings::ISOLINES;
 use crate::mesh::tri::triangulation::Triangulation;
 
 impl IsolineMesher<'_> {
-    /// How far a triangle beside a border is over the limits; `None` for one that is to be dropped.
+    /// The ratios of a triangle beside a border; `None` where it is flat and does not wrap round.
     ///
     /// At a pole the chart has edges that are points in space, and lines of the surface run into it: a triangle on such an edge, or with its
-    /// corners on such a line, is dropped.
+    /// corners on such a line, has nothing to keep.
     pub(crate) fn ratio_beside(&self, triangulation: &Triangulation, c: [u32; 3]) -> Option<LimitRatios> {
-        if self.is_flat(triangulation, c) {
-            let over = LimitRatios { chord: f64::INFINITY, angle: 0.0 };
-            return self.wraps(triangulation, c).then_some(over);
-        }
-        Some(limit_table::ratio_of_long(self.input.chart, triangulation, c, self.input.limits, &self.normals))
+        let has_nothing = self.is_flat(triangulation, c) && !self.wraps(triangulation, c);
+        (!has_nothing).then(|| limit_table::ratio_of_long(self.input.chart, triangulation, c, self.input.limits, &self.normals))
     }
 
-    /// Flips sides of triangles over the limits while the worse of the two beside one gets better; `ratios` are those of the triangles.
+    /// Flips sides of triangles over the limits while the worse of the two beside one gets better; `ratios` are those of the triangles,
+    /// without those that are sure.
     pub(crate) fn flip_over(&self, triangulation: &mut Triangulation, ratios: &mut [Option<LimitRatios>]) {
         let over = |ratio: Option<LimitRatios>| ratio.is_some_and(|ratio| ratio.worst() > 1.0);
         let mut open: Vec<u32> = (0..triangulation.tri.len() as u32).rev().filter(|t| over(ratios[*t as usize])).collect();
