@@ -123,7 +123,7 @@ fn no_point_of_a_triangle_is_farther_than_the_reported_chord_error() {
     }
 }
 
-/// A body of revolution with a waist: sides beside its seam lay across the bends, and cells were cut for them until the work was spent.
+/// A body of revolution with a waist: without flips beside the seam cells are cut until the work limit is reached.
 #[test]
 fn a_waist_is_meshed_between_isolines() {
     let mesh = mesh(
@@ -145,7 +145,7 @@ fn wave(random: &mut Random, y: f64, high: f64) -> String {
     format!("spline([{}])", points.join(", "))
 }
 
-/// Steep waves, whose triangles beside borders lie across the bends unless they are turned: every method makes a mesh that keeps its limit.
+/// Every method makes a mesh of steep waves that keeps its limit.
 #[test]
 fn steep_waves_keep_the_chord_error_by_every_method() {
     for seed in 0..count("LOFT_WAVES", 2, 8) as u64 {

@@ -242,6 +242,17 @@ fn names_layers_and_colours_of_an_imported_assembly_go_out_again() {
 }
 
 /// An assembly goes out as the tree that it was; what is read of that goes out as the same again.
+/// Whether two lines have the same words, and numbers that differ by rounding alone.
+fn are_alike(one: &str, other: &str) -> bool {
+    let pieces = |line: &str| line.split([',', '(', ')']).map(str::to_owned).collect::<Vec<_>>();
+    let (one, other) = (pieces(one), pieces(other));
+    let near = |a: &str, b: &str| match (a.parse::<f64>(), b.parse::<f64>()) {
+        (Ok(a), Ok(b)) => (a - b).abs() < 1e-12 * (1.0 + a.abs()),
+        _ => false,
+    };
+    one.len() == other.len() && one.iter().zip(&other).all(|(a, b)| a == b || near(a, b))
+}
+
 #[test]
 fn assemblies_keep_their_trees() {
     let parts = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/imports/parts");
@@ -262,8 +273,12 @@ export [for g in part.groups: {name: g.name, faces: len(g.surfaces)}] to \"group
         fs::write(&path, &once).unwrap();
         let mut again = run(&format!("tree_{name}_again"), &model(&path));
         let twice = again.remove("out.step").unwrap();
-        // Last bits of coordinates may differ.
         assert_eq!(twice.lines().count(), once.lines().count(), "{name}: the same again");
+        if name == "painted" {
+            // No frame is turned there: only last bits of coordinates may differ.
+            let differing = once.lines().zip(twice.lines()).find(|(one, other)| !are_alike(one, other));
+            assert_eq!(differing, None, "{name}: the same again");
+        }
         assert_eq!(again, files, "{name}: the same colours and groups");
     }
 }

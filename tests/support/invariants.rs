@@ -272,7 +272,8 @@ impl<'a> Seen<'a> {
             }
             worst = if off.0 > worst.0 { off } else { worst };
         }
-        // What is reported comes from climbing in four triangles from 25 places of all, which misses some per cent where others lean on a sharp bend, and is nothing where it is nothing but rounding.
+        // The reported distance is climbed to in four triangles only: where others lean on a sharp bend it is some per cent too low. Rounding is
+        // reported as nothing.
         if worst.0 > reported * 1.06 + ON * self.size {
             found.push(format!("{} off at {}, and {reported} is reported", worst.0, worst.1));
         }

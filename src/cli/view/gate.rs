@@ -5,22 +5,22 @@
 //! the token in the address, which it cannot know.
 //!
 //! The arguments of a program can be read by all users of the machine, so a browser is not given the token but a key that opens the page
-//! once, within a minute: who comes second is refused, and the user sees that somebody came first.
+//! once, within a minute. Whoever asks second is refused, so the user notices that somebody else asked first.
 
 use std::fmt::Write;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use super::answer::Answer;
 use super::http::Head;
 
 /// What a request must have to be let in.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Gate {
     port: u16,
     token: String,
     /// Keys that were not used, and when they were made.
-    keys: Arc<Mutex<Vec<(String, Instant)>>>,
+    keys: Mutex<Vec<(String, Instant)>>,
 }
 
 /// Where keys are used, in place of a token.
@@ -34,7 +34,7 @@ impl Gate {
     ///
     /// Fails when the system has none.
     pub fn new(port: u16) -> Result<Self, getrandom::Error> {
-        Ok(Self { port, token: random()?, keys: Arc::default() })
+        Ok(Self { port, token: random()?, keys: Mutex::default() })
     }
 
     /// The address of the page.
@@ -65,8 +65,11 @@ impl Gate {
         }
         let mut parts = head.path.strip_prefix('/').unwrap_or_default().splitn(2, '/');
         let (token, rest) = (parts.next().unwrap_or_default(), parts.next());
-        if let (OPEN, Some(key), true) = (token, rest, head.method == "GET" && (from_here(head) || opened(head))) {
-            return Err(self.way(key));
+        if let (OPEN, Some(key)) = (token, rest)
+            && head.method == "GET"
+            && (from_here(head) || opened(head))
+        {
+            return Err(self.use_key(key));
         }
         if !same(token.as_bytes(), self.token.as_bytes()) {
             return Err(Answer::refusal(403, "the address lacks the token; open the one that `loft view` printed last"));
@@ -78,8 +81,8 @@ impl Gate {
         rest.ok_or_else(|| Answer::refusal(404, "nothing is here; the address of the page ends in `/`"))
     }
 
-    /// The way to the page for a key, which is used up.
-    fn way(&self, key: &str) -> Answer {
+    /// The way to the page for a key, which is then forgotten.
+    fn use_key(&self, key: &str) -> Answer {
         let mut keys = self.keys.lock().unwrap_or_else(PoisonError::into_inner);
         keys.retain(|(_, made)| made.elapsed() < KEY_LIFE);
         match keys.iter().position(|(known, _)| same(known.as_bytes(), key.as_bytes())) {
@@ -126,7 +129,7 @@ mod tests {
     const TOKEN: &str = "00112233445566778899aabbccddeeff";
 
     fn check(request: &str, expected: Result<&str, u16>) {
-        let gate = Gate { port: 7357, token: TOKEN.to_owned(), keys: Arc::default() };
+        let gate = Gate { port: 7357, token: TOKEN.to_owned(), keys: Mutex::default() };
         let head = parse_head(request.replace("TOKEN", TOKEN).replace('\n', "\r\n").as_bytes()).unwrap();
         assert_eq!(gate.admit(&head).map_err(|answer| answer.status), expected, "{request}");
     }

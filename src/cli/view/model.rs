@@ -46,7 +46,7 @@ pub struct Request {
     pub chord_error: Option<f64>,
     /// What to lay over the model.
     pub compare: Option<Compare>,
-    /// The model was shown before its comparison was made, which is to be made now.
+    /// The model alone was shown already; now the state to compare with is evaluated too.
     pub again: bool,
 }
 
@@ -58,7 +58,7 @@ pub struct Evaluated {
     /// The files that it read or looked for in vain, besides the script: a change of one of them asks for a new evaluation. `None`: as
     /// before.
     pub files: Option<Vec<PathBuf>>,
-    /// What the model is compared with has to be made first: the same is to be evaluated again, with [`Request::again`].
+    /// The state to compare with is not evaluated yet: the same request has to follow with [`Request::again`].
     pub more: bool,
 }
 

@@ -38,10 +38,10 @@ struct OtherState {
     chord_error: Option<f64>,
 }
 
-/// What there is of another state.
+/// Another state of the model.
 enum Other {
     Made(frame::Compare),
-    /// It would have to be made.
+    /// It is not evaluated yet.
     Missing,
     Stopped,
 }
@@ -87,8 +87,8 @@ impl ShownModel {
         Ok(view.map(|view| (packed(&view), view.frame.ok)))
     }
 
-    /// The state to compare with, under the same params; made only where it `may` be.
-    fn other(&mut self, compare: &Compare, wanted: &Wanted, job: &Job, may: bool) -> Other {
+    /// The state to compare with, under the same params; evaluated only where `may_evaluate`.
+    fn other(&mut self, compare: &Compare, wanted: &Wanted, job: &Job, may_evaluate: bool) -> Other {
         let with = match compare {
             Compare::Golden => "golden".to_owned(),
             Compare::Revision(name) => format!("revision:{name}"),
@@ -104,7 +104,7 @@ impl ShownModel {
                 Ok(text) => text,
                 Err(why) => return failed(why),
             };
-            if !may {
+            if !may_evaluate {
                 return Other::Missing;
             }
             match self.at_revision(&state.revision, &Wanted { text, ..wanted.clone() }, job) {

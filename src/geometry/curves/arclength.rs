@@ -202,9 +202,10 @@ impl Inside {
             let miss = value - wanted;
             let step = miss / slope;
             let next = x - step;
-            // What a step leaves is half of the second derivative times its square.
-            if miss.abs() <= accuracy || 0.5 * self.bend * step * step <= accuracy && low <= next && next <= high {
-                return if low <= next && next <= high { next } else { x };
+            let is_inside = low <= next && next <= high;
+            // A step leaves at most half of the second derivative times its square.
+            if miss.abs() <= accuracy || is_inside && 0.5 * self.bend * step * step <= accuracy {
+                return if is_inside { next } else { x };
             }
             if miss > 0.0 {
                 high = x;

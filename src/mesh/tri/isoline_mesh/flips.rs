@@ -24,14 +24,20 @@ impl IsolineMesher<'_> {
     pub(crate) fn flip_over(&self, triangulation: &mut Triangulation, ratios: &mut [Option<LimitRatios>]) {
         let over = |ratio: Option<LimitRatios>| ratio.is_some_and(|ratio| ratio.worst() > 1.0);
         let mut open: Vec<u32> = (0..triangulation.tri.len() as u32).rev().filter(|t| over(ratios[*t as usize])).collect();
+        let twins = self.input.outline.twins();
         let mut left = ISOLINES.max_flips * triangulation.tri.len();
         while let (Some(t), true) = (open.pop(), left > 0) {
             job::poll();
             if !over(ratios[t as usize]) {
                 continue;
             }
+            let joins_twice = |k: usize| {
+                let (a, _, _, tip) = triangulation.round_side(t, k);
+                triangulation.joined_elsewhere(&twins, a, tip)
+            };
             let ways = (0..3).filter_map(|k| self.flipped(triangulation, ratios, t, k).map(|found| (k, found)));
-            let Some((k, found)) = ways.min_by(|a, b| worst(&a.1).total_cmp(&worst(&b.1))) else { continue };
+            let best = ways.filter(|(k, _)| !joins_twice(*k)).min_by(|a, b| worst(&a.1).total_cmp(&worst(&b.1)));
+            let Some((k, found)) = best else { continue };
             let other = triangulation.across[t as usize][k];
             triangulation.flip(t, k);
             left -= 1;

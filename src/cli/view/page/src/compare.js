@@ -10,7 +10,7 @@ export class Comparison {
     this.wanted = ''; // The state to compare with, or '' for none.
     this.awaited = null; // The same while no frame has it yet.
     this.said = false; // Whether the message of this is shown.
-    this.told = null; // Why there is none, where that was told.
+    this.failure = null; // Why the state cannot be made, where the page has said so.
   }
 
   /** What the page shows as the other state: the one that is wanted, even before it is there. */
@@ -29,7 +29,7 @@ export class Comparison {
     const before = this.wanted;
     this.end(other ?? '');
     this.awaited = this.wanted;
-    this.told = null;
+    this.failure = null;
     if (other) {
       control.tell(`The model of ${wordsOf(other)} is evaluated for the comparison; until then the picture shows today's alone.`);
       this.said = true;
@@ -47,8 +47,8 @@ export class Comparison {
     const there = compare?.with ?? '';
     this.awaited ??= there || this.wanted;
     if (this.awaited === there) this.end(there);
-    if (compare?.failed && compare.failed !== this.told) this.refused(compare.failed, there);
-    if (compare) this.told = compare.failed;
+    if (compare?.failed && compare.failed !== this.failure) this.refused(compare.failed, there);
+    if (compare) this.failure = compare.failed;
   }
 
   /** Waits no longer. */
