@@ -55,6 +55,8 @@ pub struct Face {
     pub uneven: Option<Uneven>,
     /// It stays mapped whatever its map is like: meshed freely it failed, or turned out worse.
     pub kept: bool,
+    /// Its rows are even: uneven ones would lean.
+    pub even_rows: bool,
     /// Elements that it was foreseen to have where it is meshed freely for better angles.
     pub foreseen_free: u64,
     /// The least angle that its map was foreseen to have, radians.
@@ -238,6 +240,7 @@ impl Layout {
             sides,
             uneven: None,
             kept: false,
+            even_rows: false,
             foreseen_free: 0,
             foreseen: None,
             halved: 0,

@@ -143,6 +143,7 @@ impl PlanHasher<'_> {
             free: _,
             uneven: _,
             kept: _,
+            even_rows: _,
             foreseen_free: _,
             foreseen: _,
             halved: _,

@@ -60,8 +60,8 @@ impl Sizing {
 }
 
 impl Relations {
-    /// The equations of a layout whose rows have these demands.
-    pub fn new(layout: &Layout, demands: &[[RowDemand; 2]]) -> Self {
+    /// The equations of a layout with this sizing whose rows have these demands.
+    pub fn new(layout: &Layout, sizing: &Sizing, demands: &[[RowDemand; 2]]) -> Self {
         let mut relations = Self { first_row: layout.pieces.segments.len(), ..Self::default() };
         for (index, face) in layout.faces.iter().enumerate() {
             relations.of_face.push(Vec::new());
@@ -82,6 +82,11 @@ impl Relations {
                     let least = if is_ring { 3 } else { 1 + u32::from(both_ends) };
                     let row = relations.row(index, demand, least);
                     relations.join(index, row, face, &[direction, direction + 2]);
+                    if sizing.rows[index][direction].is_some() {
+                        // Rows are straight where each segment has as many steps as the opposite one.
+                        let [a, b] = [direction, direction + 2].map(|k| face.sides[k].segments());
+                        a.iter().zip(&b).for_each(|(a, b)| relations.push(index, Relation::Equal(vec![*a], vec![*b])));
+                    }
                 }
             } else if face.elements == Elements::Triangles {
                 let row = relations.row(index, &demands[index][0], 1);

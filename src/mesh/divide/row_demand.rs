@@ -5,12 +5,11 @@ use glam::DVec3;
 use crate::base::math::widest_angle;
 use crate::base::tolerance::WHOLE_NUMBER;
 use crate::mesh::request::limits::Limits;
+use crate::mesh::size::border_spacing::SIZE_ROOM;
 use crate::surface::{Domain, Surface};
 
 /// Cells of the sample grid in each direction.
 const CELLS: usize = 32;
-/// Room that a row has above the size (language reference, mesh settings).
-pub const SIZE_ROOM: f64 = 1.05;
 
 /// Wanted steps in one direction of a face: for the size, and the least for chord and angle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -23,6 +22,15 @@ pub struct RowDemand {
     pub length: f64,
     /// Largest second difference along the rows, normal part, a step of the sample grid: by which directions are refined.
     pub bend: f64,
+}
+
+impl RowDemand {
+    /// The same where so many rows are as uneven as bends are: no place is bent more than their steps there allow.
+    pub fn of_uneven(self, rows: u32) -> Self {
+        let rows = f64::from(rows);
+        let share = rows / rows.max(self.least);
+        Self { size: rows, least: 0.0, bend: self.bend * share * share, ..self }
+    }
 }
 
 /// Demands along u and along v of a patch over the rectangle (a triangle: one for both).

@@ -12,12 +12,13 @@ use crate::mesh::data::face_mesh::FaceMesh;
 use crate::mesh::data::mesh::Mesh;
 use crate::mesh::deviation::proof::Proof;
 use crate::mesh::deviation::{certify, measure};
-use crate::mesh::divide::row_demand::{RowDemand, SIZE_ROOM};
+use crate::mesh::divide::row_demand::RowDemand;
 use crate::mesh::mapped::grid::Grid;
 use crate::mesh::request::fault::MeshLimit;
 use crate::mesh::request::input::Input;
 use crate::mesh::request::limits::Limits;
 use crate::mesh::request::recall::RecallFace;
+use crate::mesh::size::border_spacing::SIZE_ROOM;
 use crate::surface::{OneSided, Surface};
 
 /// What steers the check of finished faces.

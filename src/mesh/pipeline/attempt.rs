@@ -27,6 +27,7 @@ use crate::mesh::request::limits::Limits;
 use crate::mesh::request::work::allow;
 use crate::mesh::size::proximity::{self, Narrow};
 use crate::mesh::size::remark::Remark;
+use crate::mesh::size::row_spacing;
 use crate::mesh::size::sizing::{MOST, Sizing};
 use crate::mesh::size::uneven;
 use crate::mesh::tri::too_large::refuse_large;
@@ -82,6 +83,8 @@ enum Retry {
     BrokenSteps(Vec<(usize, u32)>),
     /// A face breaks a limit: its rows demand more steps.
     BrokenLimits,
+    /// Uneven rows of faces do not end opposite to where they begin: these become even.
+    LeaningRows(Vec<usize>),
     /// Faces have elements or edges between the same nodes.
     Coincident(Demand),
     /// Elements of a face from one of its sides to another are the same ones: the steps of its border are halved.
@@ -279,6 +282,10 @@ impl Attempt<'_> {
         if !broken.is_empty() {
             return Ok(Some(Retry::BrokenSteps(broken)));
         }
+        let leaning = row_spacing::leaning(self.layout, nodes, &self.sizing.rows);
+        if !leaning.is_empty() {
+            return Ok(Some(Retry::LeaningRows(leaning)));
+        }
         let uneven = uneven::find(self.layout, nodes, self.input.tolerance.point, &self.sizing);
         Ok((!uneven.is_empty()).then_some(Retry::UnevenBorders(uneven)))
     }
@@ -332,6 +339,7 @@ impl Attempt<'_> {
                 }
             }
             Retry::BetterMapped(faces) => faces.into_iter().for_each(|f| self.layout.faces[f].keep_map()),
+            Retry::LeaningRows(faces) => faces.into_iter().for_each(|f| self.layout.faces[f].even_rows = true),
             Retry::ClosesOnItself(f) => self.layout.faces[f].halved += 1,
         }
         (self.sizing, self.demands, self.relations) = begin(self.input, self.layout, self.size, self.cache, self.job)?;
@@ -352,7 +360,7 @@ fn begin(
     let sizing = Sizing::new(input, layout, size, &recall_steps(cache), &[])?;
     refuse_large(input, layout, &sizing, job)?;
     let demands = demands(input, layout, &sizing, &Limits::of(input), cache);
-    let relations = Relations::new(layout, &demands);
+    let relations = Relations::new(layout, &sizing, &demands);
     Ok((sizing, demands, relations))
 }
 
@@ -364,24 +372,15 @@ fn demands(input: &Input, layout: &Layout, sizing: &Sizing, limits: &Limits, cac
             return [RowDemand::default(); 2];
         }
         let no_limit = limits.chord.is_none() && limits.angle.is_none();
-        if no_limit && written(layout, sizing, f) == [true; 2] {
+        if no_limit && sizing.written_directions(&layout.faces[f]) == [true; 2] {
             return [RowDemand::default(); 2];
         }
         let patch = &input.model.patches[face.patch.index()];
         let key = |cache: &CacheView| cache.on("demands", face.surface).with(&(patch.u, patch.v, (face.size.0, limits))).finish();
         let surface = &input.model.surfaces[face.surface.index()].surface;
-        recalled(cache, |reuse| &reuse.demands, key, || row_demand::demands(surface, patch.u, patch.v, face.size.0, limits))
+        let even = recalled(cache, |reuse| &reuse.demands, key, || row_demand::demands(surface, patch.u, patch.v, face.size.0, limits));
+        [0, 1].map(|k| sizing.rows[f][k].map_or(even[k], |rows| even[k].of_uneven(rows)))
     })
-}
-
-/// Directions of a face with a side whose counts are all written out.
-fn written(layout: &Layout, sizing: &Sizing, face: usize) -> [bool; 2] {
-    let sides = &layout.faces[face].sides;
-    if layout.faces[face].free {
-        return [true; 2];
-    }
-    let all = |k: usize| !sides[k].uses.is_empty() && sides[k].uses.iter().all(|u| sizing.decisions[u.segment].count.is_some());
-    if sides.len() == 3 { [(0..3).any(all); 2] } else { [all(0) || all(2), all(1) || all(3)] }
 }
 
 fn finished<'a>(layout: &'a Layout, sizing: &Sizing, prepared: &'a [FaceMesh], demands: &'a [[RowDemand; 2]]) -> Vec<Finished<'a>> {
@@ -390,7 +389,7 @@ fn finished<'a>(layout: &'a Layout, sizing: &Sizing, prepared: &'a [FaceMesh], d
         face_mesh: &prepared[f],
         triangles,
         demands: &demands[f],
-        written: written(layout, sizing, f),
+        written: sizing.written_directions(&layout.faces[f]),
     };
     face_mesh::element_ranges(prepared).into_iter().enumerate().map(one).collect()
 }

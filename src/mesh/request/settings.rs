@@ -204,9 +204,9 @@ mesh_settings! {
         min_size: f64, Takes::Size, POSITIVE, "a hundredth of the size; written sizes and limits may go below it",
             ["mesh::request::size_requests::SizeRequests::new"];
         /// Ratio of neighbouring sizes on free faces and their borders: away from a place with small steps the size grows by
-        /// `growth - 1` of the distance. Rows of mapped faces are even and not graded.
+        /// `growth - 1` of the distance. Rows of mapped faces grow like that where they are uneven.
         growth: f64, Takes::Ratio, ABOVE_ONE, "1.3" => GROWTH,
-            ["mesh::request::sources", "mesh::size::spacing_solver", "mesh::tri::longest"];
+            ["mesh::request::sources", "mesh::size::spacing_solver", "mesh::size::row_spacing", "mesh::tri::longest"];
         /// Largest number of smoothing rounds on free faces; a node that no longer moves is done earlier. 0 does not smooth.
         smooth: u32, Takes::Count, ANY,
             "5; 4 within `chord_error` or `angle_error`; 8 for quads and where lengths grow from short pieces; 30 with `quadtree`",

@@ -51,6 +51,9 @@ pub(super) const SPACING_SETTINGS: SpacingSettings = SpacingSettings {
     max_linear_error: 0.02,
 };
 
+/// Room that a row has above the size (language reference, mesh settings).
+pub const SIZE_ROOM: f64 = 1.05;
+
 /// Spacing of the lattice as a share of the size, so that hardly an edge comes out longer than the size allows.
 pub const SPACING: f64 = 0.8;
 
@@ -101,22 +104,30 @@ impl BorderSpacing {
             let peak = 0.5 * (a + b + slope * (g - f)).min(2.0 * most);
             let ways = [(f + (peak - a) / slope, peak), (g - (peak - b) / slope, peak)];
             for (at, length) in ways.into_iter().chain([(g, b)]) {
-                let (before, from) = (spacing.at[spacing.at.len() - 1], spacing.lengths[spacing.lengths.len() - 1]);
-                if at > before && at <= g {
-                    // Shares are added up from place to place: near enough to each other for lengths that grow.
-                    let parts = (math::log(length / from).abs() / math::log(SPACING_SETTINGS.equal_ratio))
-                        .ceil()
-                        .clamp(1.0, SPACING_SETTINGS.max_parts) as usize;
-                    for k in 1..=parts {
-                        let now = if k == parts { length } else { from * math::exp(math::log(length / from) * k as f64 / parts as f64) };
-                        let share = if k == parts { 1.0 } else { (now - from) / (length - from) };
-                        spacing.at.push(before + (at - before) * share);
-                        spacing.lengths.push(now);
-                    }
+                if at <= g {
+                    spacing.grow_to(at, length);
                 }
             }
         }
         spacing
+    }
+
+    /// Adds a place, unless it is not beyond the last one, and others before it: shares are added up from place to place, near enough to each
+    /// other for lengths that grow.
+    pub(super) fn grow_to(&mut self, at: f64, length: f64) {
+        let (before, from) = (self.at[self.at.len() - 1], self.lengths[self.lengths.len() - 1]);
+        if at <= before {
+            return;
+        }
+        let parts =
+            (math::log(length / from).abs() / math::log(SPACING_SETTINGS.equal_ratio)).ceil().clamp(1.0, SPACING_SETTINGS.max_parts);
+        for k in 1..=parts as usize {
+            let is_last = k == parts as usize;
+            let now = if is_last { length } else { from * math::exp(math::log(length / from) * k as f64 / parts) };
+            let share = if is_last { 1.0 } else { (now - from) / (length - from) };
+            self.at.push(before + (at - before) * share);
+            self.lengths.push(now);
+        }
     }
 
     /// Steps that grow geometrically, the last `bias` times the first: their size is linear in the length.

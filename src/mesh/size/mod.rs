@@ -9,6 +9,8 @@ pub mod girth;
 pub mod least_counts;
 pub mod proximity;
 pub mod remark;
+pub mod row_profile;
+pub mod row_spacing;
 pub mod rule_effects;
 pub mod rule_lines;
 pub mod segment_rules;

@@ -68,13 +68,19 @@ impl RuleEffects {
         for (k, key) in FREE_ONLY.into_iter().enumerate() {
             let (acts, on) = match key {
                 "smooth" => (free, "freely meshed faces"),
-                "growth" => (free || !plan.refines.is_empty(), "freely meshed faces"),
+                "growth" => (free || !plan.refines.is_empty(), "freely meshed faces and uneven rows"),
                 _ => (plane_quads, "freely meshed plane faces of quads"),
             };
             let idle = free_only_origin(plan, key).is_some() && !acts;
             self.used[first + k] = !idle;
             self.inapplicable[first + k] = idle.then(|| format!("`{key}` is for {on}, and there is none here"));
         }
+    }
+
+    /// `growth` acts on rows of maps that are uneven.
+    pub(super) fn mark_uneven_rows(&mut self, plan: &Plan) {
+        let growth = FREE_ONLY.iter().position(|key| *key == "growth").map(|k| plan.rules.len() + plan.refines.len() + k);
+        growth.into_iter().for_each(|k| (self.used[k], self.inapplicable[k]) = (true, None));
     }
 
     /// Marks the clauses that make steps of segments shorter; `sizes` are those of the segments, model units.

@@ -18,6 +18,7 @@ use crate::mesh::size::face_settings::{apply_rules, refine_mapped, sizes_of_segm
 use crate::mesh::size::least_counts::{self, MAX_COUNT};
 use crate::mesh::size::proximity::Narrow;
 use crate::mesh::size::remark::Remark;
+use crate::mesh::size::row_spacing::UnevenRows;
 use crate::mesh::size::rule_effects::RuleEffects;
 use crate::mesh::size::segment_rules::{SegmentRules, SegmentSettings};
 use crate::mesh::size::spacing_solver::{SpacingInput, spacings};
@@ -61,6 +62,10 @@ pub struct Sizing {
     pub spacings: BorderSpacings,
     /// Steps that segments of mapped faces would have to have for the free faces beside them.
     pub required_on_mapped: BorderSpacings,
+    /// Numbers of rows of mapped faces whose rows are uneven.
+    pub rows: UnevenRows,
+    /// Steps without a bias may vary: a bias of 1 keeps them even.
+    pub may_vary: bool,
     /// The bias rule of each segment.
     pub bias_rule: Vec<Option<usize>>,
     /// Sizes requested by `near`, `in` and `min_size`.
@@ -151,8 +156,23 @@ impl Sizing {
         });
         let written: Vec<Option<BorderSpacing>> = written.collect();
         let given = SpacingInput { wanted: &self.wanted, limits: &limits, size: sizes, written: &written, narrow, rows: &rows };
-        (self.spacings, self.required_on_mapped) = spacings(input, layout, &given)?;
+        self.may_vary = limits.chord.is_some() || limits.angle.is_some() || !self.wanted.sources.is_empty();
+        let found = spacings(input, layout, &given)?;
+        (self.spacings, self.required_on_mapped, self.rows) = (found.of_segments, found.required_on_mapped, found.rows);
+        if self.rows.iter().flatten().any(Option::is_some) {
+            self.effects.mark_uneven_rows(input.plan);
+        }
         Ok(biased)
+    }
+
+    /// Directions of a face with a side whose counts are all written out, along u and along v; of a face that has no rows both.
+    pub fn written_directions(&self, face: &Face) -> [bool; 2] {
+        if face.free {
+            return [true; 2];
+        }
+        let sides = &face.sides;
+        let all = |k: usize| !sides[k].uses.is_empty() && sides[k].uses.iter().all(|u| self.decisions[u.segment].count.is_some());
+        if sides.len() == 3 { [(0..3).any(all); 2] } else { [all(0) || all(2), all(1) || all(3)] }
     }
 
     /// The nodes of a segment with so many steps, as fractions of its length from 0 to 1.
@@ -213,7 +233,7 @@ impl Sizing {
             }
             if let Some(rule) = self.bias_rule[k]
                 && counts[k] > 1
-                && d.bias != 1.0
+                && (d.bias != 1.0 || self.may_vary)
             {
                 self.effects.mark_used(rule);
             }

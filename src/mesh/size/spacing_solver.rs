@@ -15,6 +15,7 @@ use crate::mesh::size::bend_spacing::lower_to_bends;
 use crate::mesh::size::border_spacing::{BorderSpacing, BorderSpacings, SPACING_SETTINGS};
 use crate::mesh::size::gaps::SegmentBeside;
 use crate::mesh::size::proximity::Narrow;
+use crate::mesh::size::row_spacing::{UnevenRows, lower_to_rows};
 use crate::mesh::size::spacing_sampler::lowered;
 use crate::mesh::size::too_large;
 
@@ -34,13 +35,24 @@ pub(super) struct SpacingInput<'a> {
     pub rows: &'a [Vec<SegmentBeside>],
 }
 
-/// The spacings of segments whose steps vary: on free faces under limits, elsewhere where something is refined or neighbours are shorter.
-/// Segments of mapped faces follow the bends of free ones beside them and nothing else: their rows are even. The second
-/// list has the spacings that those would have to follow, were they not. E217 where bends alone demand too many steps.
-pub(super) fn spacings(input: &Input, layout: &Layout, given: &SpacingInput) -> Result<(BorderSpacings, BorderSpacings)> {
+/// The spacings of all segments.
+pub(super) struct Spacings {
+    /// Of segments whose steps vary.
+    pub of_segments: BorderSpacings,
+    /// Those that segments of mapped faces would have to follow for the free faces beside them.
+    pub required_on_mapped: BorderSpacings,
+    /// Numbers of rows of maps whose rows are uneven.
+    pub rows: UnevenRows,
+}
+
+/// The spacings of segments whose steps vary: under limits, and where something is refined or neighbours of free faces are shorter.
+/// Segments of mapped faces follow the bends of free ones beside them, and those of their own where even rows would have to be many more.
+/// E217 where bends alone demand too many steps.
+pub(super) fn spacings(input: &Input, layout: &Layout, given: &SpacingInput) -> Result<Spacings> {
     let n = layout.pieces.segments.len();
     let mut spacings: Vec<BorderSpacing> = given.size.iter().map(|s| BorderSpacing::even(*s)).collect();
     lower_to_bends(input, layout, given, &mut spacings);
+    let rows = lower_to_rows(input, layout, given, &mut spacings);
     too_large::refuse_bends(input, layout, &spacings, given.size)?;
     let bent = spacings.clone();
     let mut even = vec![false; n];
@@ -68,7 +80,7 @@ pub(super) fn spacings(input: &Input, layout: &Layout, given: &SpacingInput) -> 
             BorderSpacing { why, ..spacing.clone() }
         })
     });
-    Ok((spacings, required_on_mapped))
+    Ok(Spacings { of_segments: spacings, required_on_mapped, rows })
 }
 
 /// The segments of a layout with what is given of them.
