@@ -359,11 +359,12 @@ fn who_does_not_belong_here_is_refused() {
     check(&format!("DELETE {base}frame"), &host, 405);
     check(&format!("HEAD {base}"), &host, 405);
     for path in
-        ["../../etc/passwd", "..%2f..%2fetc/passwd", "%2e%2e/%2e%2e/etc/passwd", "frame/", "Frame", "buffer", "model.loft", "./frame"]
+        ["../../etc/passwd", "..%2f..%2fetc/passwd", "%2e%2e/%2e%2e/etc/passwd", "frame/", "Frame", "buffers", "model.loft", "./frame"]
     {
         check(&format!("GET {base}{path}"), &host, 404);
     }
-    check(&format!("GET {base}buffer/../../../etc/passwd"), &host, 404);
+    check(&format!("GET {base}buffers/../../../etc/passwd"), &host, 400);
+    check(&format!("GET {base}buffer/{:032x}", 1), &host, 404);
     check(&format!("GET {base}events?tab=%0d%0aX"), &host, 400);
     check("GET http://localhost/", &host, 400);
     check("GET /../../etc/passwd", &host, 403);
@@ -599,7 +600,8 @@ fn a_script_that_goes_away_and_comes_back() {
     assert_eq!(tab.event().unwrap(), ("gone".to_owned(), json!({ "file": "model.loft" })));
     assert_eq!(view.get("frame").status, 204);
     view.save("one\n");
-    assert_eq!(tab.wait_for("frame"), json!({ "number": 2 }));
+    let told = tab.wait_for("frame");
+    assert_eq!((&told["number"], &told["frame"]["text"]), (&json!(2), &json!("one\n")));
     fs::remove_file(&view.script).unwrap();
     tab.wait_for("gone");
     // Who comes now is told as well; nothing is evaluated.
@@ -792,7 +794,7 @@ fn what_the_page_asks_reaches_the_model() {
 fn buffers_stay_for_two_frames_and_for_who_may_be_fetching_them() {
     let view = View::new("buffers", Some("buffer 100\nbuffer 20000\n"));
     view.frame_of("buffer 100\nbuffer 20000\n");
-    let path = |size: usize| format!("buffer/{size:032x}");
+    let path = |size: usize| format!("buffers/{size:032x}");
     let got = view.get(&path(20_000));
     assert_eq!((got.status, got.body.len()), (200, 20_000));
     assert!(got.headers.contains("immutable"));
@@ -803,9 +805,10 @@ fn buffers_stay_for_two_frames_and_for_who_may_be_fetching_them() {
         view.replace(&format!("buffer {i}\n"));
         assert_eq!(tab.frame(), 2 * i);
     }
-    // The first was fetched just now.
-    assert_eq!(view.get(&path(20_000)).status, 200);
-    assert_eq!((view.get(&path(2)).status, view.get(&path(5)).status, view.get(&path(6)).status), (404, 200, 200));
+    // The first was fetched just now, the others were told in their events.
+    for size in [20_000, 2, 5, 6] {
+        assert_eq!(view.get(&path(size)).status, 200);
+    }
     thread::sleep(Duration::from_millis(5100));
     view.replace("buffer 7\n");
     assert_eq!(tab.frame(), 14);
@@ -819,6 +822,52 @@ fn an_old_frame_never_overwrites_a_new_one() {
     assert!(frames.publish(2, frame("two")));
     assert!(!frames.publish(1, frame("one")) && !frames.publish(2, frame("again")));
     assert_eq!((frames.number(), frames.newest().unwrap().plain().as_slice()), (2, b"\"two\"".as_slice()));
+    assert_eq!((view.get(&path(2)).status, view.get(&path(6)).status), (404, 200));
+}
+
+#[test]
+fn a_large_frame_is_not_told_in_its_event() {
+    let text = "x".repeat(70_000) + "\nbuffer 3\n";
+    let view = View::new("large-frame", Some(&text));
+    let mut tab = view.tab("a", 0);
+    assert_eq!(tab.wait_for("frame"), json!({ "number": 2 }));
+    for i in 2..6 {
+        view.replace(&format!("{text}buffer {i}\n"));
+        assert_eq!(tab.frame(), 2 * i);
+    }
+    // Nobody fetched the frames between.
+    let status = |size: usize| view.get(&format!("buffers/{size:032x}")).status;
+    assert_eq!([status(2), status(4), status(5)], [404, 200, 200]);
+}
+
+#[test]
+fn one_answer_has_many_buffers() {
+    let text = "buffer 100\nbuffer 5000\nbuffer 0\nbuffer 3000000\nbuffer 3000001\n";
+    let view = View::new("together", Some(text));
+    view.frame_of(text);
+    let ask = |sizes: &[usize]| {
+        let keys: Vec<String> = sizes.iter().map(|size| format!("{size:032x}")).collect();
+        view.ask("GET", &format!("buffers/{}", keys.join("+")), "Accept-Encoding: gzip\r\n", "")
+    };
+    let alone = |size: usize| view.get(&format!("buffers/{size:032x}")).body;
+    let got = ask(&[5000, 7, 100, 0]);
+    assert_eq!((got.status, got.body), (200, [alone(5000), alone(100)].concat()));
+    assert!(got.headers.contains("\r\nPart-Lengths: 5000,-,100,0\r\n") && got.headers.contains("no-store"), "{}", got.headers);
+    let nothing = ask(&[7, 8]);
+    assert!(nothing.status == 200 && nothing.body.is_empty() && nothing.headers.contains("Part-Lengths: -,-\r\n"));
+    assert!(!ask(&[100]).headers.contains("Part-Lengths"));
+    assert_eq!(ask(&[7]).status, 404);
+    // Too many bytes, keys or signs; keys that are none, or that are named twice.
+    assert_eq!([ask(&[3_000_000, 100]).status, ask(&[3_000_000, 3_000_001]).status], [200, 413]);
+    let many: Vec<usize> = (1..=view::routes::MOST_BUFFERS + 1).collect();
+    assert_eq!([ask(&many[1..]).status, ask(&many).status, ask(&[100, 100]).status], [200, 400, 400]);
+    let key = format!("{:032x}", 100);
+    for keys in
+        ["", "+", &format!("{key}+"), &format!("+{key}"), &key[1..], &format!("{key}%2b{key}"), &"G".repeat(32), &key.replace('6', "A")]
+    {
+        assert_eq!(view.get(&format!("buffers/{keys}")).status, 400, "{keys}");
+    }
+    assert_eq!(view.get(&format!("buffers/{}", vec![key.as_str(); 600].join("+"))).status, 431);
     assert!(frames.publish(3, frame("three")));
     assert_eq!(frames.newest().unwrap().plain().as_slice(), b"\"three\"");
 }
@@ -874,7 +923,7 @@ fn a_bug_in_the_model_is_told_and_survived() {
     assert_eq!(frame["diagnostics"][0]["severity"], "error");
     view.save("two\n");
     view.frame_of("two\n");
-    assert_eq!(view.get(&format!("buffer/{:032x}", 9)).status, 200);
+    assert_eq!(view.get(&format!("buffers/{:032x}", 9)).status, 200);
 }
 
 #[test]
@@ -966,7 +1015,7 @@ fn large_buffers_come_whole() {
     view.frame_of(&text);
     for headers in ["", "Accept-Encoding: gzip\r\n", "Accept-Encoding: gzip\r\n"] {
         let began = Instant::now();
-        let got = view.ask("GET", &format!("buffer/{size:032x}"), headers, "");
+        let got = view.ask("GET", &format!("buffers/{size:032x}"), headers, "");
         assert_eq!(got.status, 200);
         println!("24 MB, {headers:?}: {} bytes in {:?}", got.body.len(), began.elapsed());
     }

@@ -12,6 +12,11 @@ export async function startFake(model, { onSet, page = readFileSync(PAGE, 'utf8'
   const fake = { model, asked: [], posts: [], streams: new Set(), inFlight: 0, mostInFlight: 0, delays: new Map() };
   const kept = new Map(model.buffers);
 
+  // A frame stands in its event unless a test delays it, or it is large.
+  const told = ({ frame }) => {
+    const isLarge = JSON.stringify(frame).length > 65536;
+    return { number: frame.number, ...(isLarge || fake.delays.get(frame.number) ? {} : { frame }) };
+  };
   fake.send = (event, data) => {
     for (const stream of fake.streams) stream.write(`event: ${event}\ndata: ${JSON.stringify(data)}\n\n`);
   };
@@ -21,7 +26,7 @@ export async function startFake(model, { onSet, page = readFileSync(PAGE, 'utf8'
   };
   fake.show = (next) => {
     fake.hold(next);
-    fake.send('frame', { number: next.frame.number });
+    fake.send('frame', told(next));
   };
 
   const server = createServer(async (request, response) => {
@@ -51,15 +56,21 @@ export async function startFake(model, { onSet, page = readFileSync(PAGE, 'utf8'
       await new Promise((done) => setTimeout(done, fake.delays.get(now.frame.number) ?? 0));
       return answer(200, 'application/json', gzipSync(JSON.stringify(now.frame)), { 'Content-Encoding': 'gzip' });
     }
-    if (what.startsWith('buffer/')) {
-      const bytes = kept.get(what.slice(7));
-      return bytes
-        ? answer(200, 'application/octet-stream', bytes, { 'Cache-Control': 'immutable, max-age=31536000' })
+    if (what.startsWith('buffers/')) {
+      const keys = what.slice('buffers/'.length).split('+');
+      const found = keys.map((key) => kept.get(key));
+      const media = 'application/octet-stream';
+      if (found.length > 1) {
+        const lengths = found.map((bytes) => bytes?.length ?? '-').join(',');
+        return answer(200, media, Buffer.concat(found.filter(Boolean)), { 'Part-Lengths': lengths });
+      }
+      return found[0]
+        ? answer(200, media, found[0], { 'Cache-Control': 'immutable, max-age=31536000' })
         : answer(404, 'text/plain', 'no such buffer');
     }
     if (what === 'events') {
       response.writeHead(200, { 'Content-Type': 'text/event-stream', 'Cache-Control': 'no-store' });
-      response.write(`event: frame\ndata: {"number":${fake.model.frame.number}}\n\n`);
+      response.write(`event: frame\ndata: ${JSON.stringify(told(fake.model))}\n\n`);
       fake.streams.add(response);
       request.on('close', () => fake.streams.delete(response));
       return undefined;

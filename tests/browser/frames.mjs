@@ -131,12 +131,12 @@ test('200 frames in 10 s: the last is shown, an older never follows a newer, not
 
 test('only buffers that are not in memory are fetched', async () => {
   await over(roof(1), async ({ page, fake, requests }) => {
-    const before = requests.filter((url) => url.includes('/buffer/')).length;
+    const before = requests.filter((url) => url.includes('/buffers/')).length;
     const next = roof(1);
     next.frame.number = 2;
     fake.show(next);
     await ready(page, 2);
-    assert.equal(requests.filter((url) => url.includes('/buffer/')).length, before);
+    assert.equal(requests.filter((url) => url.includes('/buffers/')).length, before);
   });
 });
 

@@ -160,7 +160,7 @@ test('a partial frame keeps checks, tables, compare, camera, selection and what 
     const asked = fake.asked.length;
     fake.show(roof(4, next));
     await same(4);
-    assert.equal(fake.asked.slice(asked).filter((path) => path.includes('/buffer/')).length, 0);
+    assert.equal(fake.asked.slice(asked).filter((path) => path.includes('/buffers/')).length, 0);
     assert.equal(await page.locator('#stale').isVisible(), false);
     assert.equal(await page.locator('[aria-label="Checks"]').getAttribute('aria-busy'), null);
   });

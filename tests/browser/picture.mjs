@@ -13,7 +13,7 @@ test('the roof is drawn, one call a buffer, and nothing is drawn while nothing c
     assert.equal(now.drawCalls, now.drawn.length);
     assert.equal(now.buffers, 9);
     assert.ok((await shareDrawn(page)) > 0.1);
-    assert.equal(requests.filter((url) => url.includes('/buffer/')).length, 9);
+    assert.equal(requests.filter((url) => url.includes('/buffers/')).length, 1);
     await page.waitForTimeout(200);
     const before = (await state(page)).pictures;
     await page.waitForTimeout(400);

@@ -1,40 +1,16 @@
 // The program itself, where LOFT names it: every example is opened, drawn, picked and kept as a picture.
 
 import assert from 'node:assert/strict';
-import { spawn } from 'node:child_process';
 import { readdirSync } from 'node:fs';
-import { createInterface } from 'node:readline';
 import { test } from 'node:test';
 import { fileURLToPath } from 'node:url';
 import { canvasBox, open, PICTURES, ready, shareDrawn } from './browser.mjs';
-import { browser } from './harness.mjs';
+import { browser, serve } from './harness.mjs';
 
 const { LOFT, LOFT_ACCEPT: ACCEPT } = process.env;
 const EXAMPLES = fileURLToPath(new URL('../../examples/', import.meta.url));
 // LOFT_ACCEPT=1 makes the pictures of the guide anew.
 const GUIDE = fileURLToPath(new URL('../../docs/guide/pictures/view/', import.meta.url));
-
-/** Starts `loft view` and gives its address, which it prints on a line of its own. */
-export async function serve(file) {
-  const child = spawn(LOFT, ['view', file, '--no-open', '--port', '0'], { stdio: ['ignore', 'pipe', 'pipe'] });
-  let said = '';
-  child.stderr.on('data', (data) => (said += data));
-  const address = await new Promise((done, failed) => {
-    createInterface({ input: child.stdout }).on('line', (line) => {
-      const found = line.match(/http:\/\/127\.0\.0\.1:\d+\/[0-9a-f]{32}\//);
-      if (found) done(found[0]);
-    });
-    child.on('exit', (code) => failed(new Error(`loft view ended with ${code}: ${said}`)));
-    setTimeout(() => failed(new Error(`loft view printed no address in 60 s: ${said}`)), 60_000).unref();
-  });
-  const stop = () =>
-    new Promise((done) => {
-      child.removeAllListeners('exit');
-      child.on('exit', done);
-      child.kill('SIGINT');
-    });
-  return { address, stop, child };
-}
 
 if (LOFT) {
   for (const file of readdirSync(EXAMPLES)

@@ -9,3 +9,4 @@ import './comparison.mjs';
 import './extremes.mjs';
 import './meshes.mjs';
 import './program.mjs';
+import './saves.mjs';

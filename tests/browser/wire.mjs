@@ -2,6 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
+import { grouped, parted } from '../../src/cli/view/page/src/together.js';
 import { readBuffer } from '../../src/cli/view/page/src/wire.js';
 import { buffer, inSteps } from './fake_buffers.mjs';
 
@@ -24,6 +25,31 @@ test('steps that leave the points, and codings that nobody knows, are refused', 
   assert.throws(() => read(flat(40, { lines: ['i16', 2, [7, -8], 'steps'] })), /lines name point/);
   assert.throws(() => read(flat(40, { lines: ['i16', 2, [7, 40], 'steps'] })), /lines name point 47 of 40/);
   assert.throws(() => read(flat(40, { lines: ['i16', 2, [7, 1], 'knots'] })), /coding knots/);
+});
+
+test('small buffers are asked for together, a large one alone, and no request for more than the server takes', () => {
+  const rows = (sizes) => sizes.map((bytes, i) => ({ key: `k${i}`, bytes }));
+  assert.deepEqual(grouped(rows([10, 300_000, 262_144, 10])), [['k0', 'k2', 'k3'], ['k1']]);
+  assert.deepEqual(
+    grouped(rows(new Array(9).fill(200_000))).map((keys) => keys.length),
+    [5, 4],
+  );
+  assert.deepEqual(
+    grouped(rows(new Array(150).fill(9))).map((keys) => keys.length),
+    [64, 64, 22],
+  );
+  assert.deepEqual(grouped([]), []);
+});
+
+test('an answer to several is parted; one that is missing leaves the others', () => {
+  const bytes = new Uint8Array([1, 2, 3, 4, 5]).buffer;
+  const of = (lengths) => [...parted(['a', 'b', 'c'], lengths, bytes)].map(([key, part]) => [key, ...new Uint8Array(part)]);
+  assert.deepEqual(of('2,-,3'), [
+    ['a', 1, 2],
+    ['c', 3, 4, 5],
+  ]);
+  assert.equal(parted(['a'], null, bytes).get('a'), bytes);
+  for (const lengths of ['2,3', '2,-,4', '2,-,2', '2,x,3', '']) assert.throws(() => of(lengths), /does not fit/);
 });
 
 test('a million triangles in steps', (t) => {

@@ -30,12 +30,13 @@ pub struct Answer {
     keep: Keep,
     allow: Option<&'static str>,
     location: Option<String>,
+    lengths: Option<String>,
 }
 
 impl Answer {
     /// An answer with a body of some media type.
     pub fn new(media: &'static str, body: Vec<u8>) -> Self {
-        Self { status: 200, media, body: Arc::new(body), gzip: false, keep: Keep::Never, allow: None, location: None }
+        Self { status: 200, media, body: Arc::new(body), gzip: false, keep: Keep::Never, allow: None, location: None, lengths: None }
     }
 
     /// A JSON value.
@@ -48,6 +49,14 @@ impl Answer {
         let compressed = if takes_gzip { packed.gzip() } else { None };
         let body = compressed.unwrap_or(packed.plain()).clone();
         Self { body, gzip: compressed.is_some(), ..Self::new(media, Vec::new()) }
+    }
+
+    /// Several bodies one after the other, with the length of each in a header of its own; `None` where one is missing.
+    pub fn several(media: &'static str, parts: &[Option<Arc<Packed>>]) -> Self {
+        let length = |part: &Option<Arc<Packed>>| part.as_ref().map_or("-".to_owned(), |part| part.plain().len().to_string());
+        let lengths = parts.iter().map(length).collect::<Vec<_>>().join(",");
+        let body: Vec<&[u8]> = parts.iter().flatten().map(|part| part.plain().as_slice()).collect();
+        Self { lengths: Some(lengths), ..Self::new(media, body.concat()) }
     }
 
     /// The same answer with another status.
@@ -93,6 +102,9 @@ impl Answer {
         }
         if self.gzip {
             head += "Content-Encoding: gzip\r\n";
+        }
+        if let Some(lengths) = &self.lengths {
+            head += &format!("Part-Lengths: {lengths}\r\n");
         }
         if let Some(methods) = self.allow {
             head += &format!("Allow: {methods}\r\n");

@@ -1,7 +1,8 @@
 //! What the open pages are told: server-sent events, the newest of each kind.
 //!
 //! A page needs the state, not its history. So an event that could not be sent yet gives way to a newer one of its kind, and a page that
-//! takes nothing holds a few hundred bytes here, until it is dropped. Numbers of frames only go up.
+//! takes nothing holds one event of each kind here, until it is dropped. Numbers of frames only go up. A small frame is told in its event,
+//! so that the page need not ask for it.
 
 use std::io::{self, Read, Write};
 use std::net::{Shutdown, TcpStream};
@@ -9,6 +10,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use super::answer::stream_head;
+use super::compress::Packed;
 
 /// Streams that are open at once. Browsers open six connections to a server for all tabs together; the rest is for what the tabs fetch.
 /// One stream more ends the oldest, whose page asks again soon: many tabs take turns and all of them follow.
@@ -45,11 +47,19 @@ pub struct Events {
 #[derive(Debug, Default)]
 struct State {
     tabs: Vec<Tab>,
-    /// The newest frame; 0 before the first.
-    frame: u64,
+    frame: Newest,
     /// What a page that opens now must know beside the frame.
     gone: Option<String>,
     over: bool,
+}
+
+/// The newest frame.
+#[derive(Clone, Debug, Default)]
+struct Newest {
+    /// 0 before the first.
+    number: u64,
+    /// Where it is small: its JSON, on one line.
+    json: Option<Arc<Packed>>,
 }
 
 #[derive(Debug)]
@@ -84,7 +94,7 @@ impl Events {
         }
         let waiting = [None, state.gone.clone(), None];
         let mut tab = Tab { name: name.to_owned(), stream, sending, taken: 0, frame: last, waiting, active: Instant::now() };
-        if tab.send(state.frame).is_ok() {
+        if tab.send(&state.frame).is_ok() {
             state.tabs.push(tab);
         }
         Ok(())
@@ -97,10 +107,12 @@ impl Events {
         state.tabs.iter_mut().for_each(|tab| tab.waiting[Kind::Gone as usize] = None);
     }
 
-    /// Tells a new frame.
-    pub fn frame(&self, number: u64) {
+    /// Tells a new frame, with its JSON where that is on one line and small.
+    pub fn frame(&self, number: u64, json: Option<Arc<Packed>>) {
         let mut state = self.state();
-        state.frame = state.frame.max(number);
+        if number > state.frame.number {
+            state.frame = Newest { number, json };
+        }
         state.send();
     }
 
@@ -151,14 +163,14 @@ impl Events {
 
 impl State {
     fn send(&mut self) {
-        let frame = self.frame;
-        self.tabs.retain_mut(|tab| tab.send(frame).is_ok());
+        let Self { tabs, frame, .. } = self;
+        tabs.retain_mut(|tab| tab.send(frame).is_ok());
     }
 }
 
 impl Tab {
     /// Sends as much as the other side takes now.
-    fn send(&mut self, frame: u64) -> io::Result<()> {
+    fn send(&mut self, frame: &Newest) -> io::Result<()> {
         loop {
             while self.taken < self.sending.len() {
                 match (&*self.stream).write(&self.sending[self.taken..]) {
@@ -173,18 +185,26 @@ impl Tab {
                 }
             }
             let Some(next) = self.next(frame) else { return Ok(()) };
-            (self.sending, self.taken, self.active) = (next.into_bytes(), 0, Instant::now());
+            (self.sending, self.taken, self.active) = (next, 0, Instant::now());
         }
     }
 
     /// The next event that it has not been told.
-    fn next(&mut self, frame: u64) -> Option<String> {
-        if self.frame < frame {
-            self.frame = frame;
+    fn next(&mut self, frame: &Newest) -> Option<Vec<u8>> {
+        let number = frame.number;
+        if self.frame < number {
+            self.frame = number;
             // The browser names this number when it asks again by itself.
-            return Some(format!("id: {frame}\nevent: frame\ndata: {{\"number\":{frame}}}\n\n"));
+            let mut event = format!("id: {number}\nevent: frame\ndata: {{\"number\":{number}").into_bytes();
+            if let Some(json) = &frame.json {
+                event.extend_from_slice(b",\"frame\":");
+                event.extend_from_slice(json.plain());
+            }
+            event.extend_from_slice(b"}\n\n");
+            return Some(event);
         }
-        KINDS.iter().zip(&mut self.waiting).find_map(|((_, name), data)| data.take().map(|data| format!("event: {name}\ndata: {data}\n\n")))
+        let told = |name: &str, data: String| format!("event: {name}\ndata: {data}\n\n").into_bytes();
+        KINDS.iter().zip(&mut self.waiting).find_map(|((_, name), data)| data.take().map(|data| told(name, data)))
     }
 
     /// The other side ended the stream.

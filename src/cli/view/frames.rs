@@ -19,6 +19,9 @@ const MOST: usize = 64;
 /// Bytes that frames within the grace may hold beside the newest ones.
 const MOST_BYTES: usize = 256 << 20;
 
+/// Bytes of a frame that is told in the event itself.
+const SMALL: usize = 64 * 1024;
+
 /// The newest frames.
 #[derive(Debug, Default)]
 pub struct Frames {
@@ -83,6 +86,19 @@ impl Frames {
         let newest = state.frames.back_mut()?;
         newest.fetched = Some(Instant::now());
         Some(newest.json.clone())
+    }
+
+    /// The number of the newest frame, and its JSON where it is small enough to be told in an event: on one line, as events are. A page
+    /// that is told it goes on to its buffers.
+    pub fn newest_told(&self) -> (u64, Option<Arc<Packed>>) {
+        let mut state = self.state();
+        let Some(newest) = state.frames.back_mut() else { return (0, None) };
+        let plain = newest.json.plain();
+        let small = plain.len() <= SMALL && !plain.iter().any(|b| matches!(b, b'\n' | b'\r'));
+        if small {
+            newest.fetched = Some(Instant::now());
+        }
+        (newest.number, small.then(|| newest.json.clone()))
     }
 
     /// The newest frame as it was published: its JSON and its buffers.

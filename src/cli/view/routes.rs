@@ -1,12 +1,25 @@
 //! What each address answers.
 
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
 use serde_json::{Value, json};
 
 use super::answer::{Answer, Keep};
+use super::compress::Packed;
 use super::events::Kind;
 use super::http::{Connection, Failure, Head};
 use super::model::Compare;
 use super::server::Shared;
+
+/// Buffers that one request may ask for.
+pub const MOST_BUFFERS: usize = 128;
+
+/// Bytes that several buffers may have together; one may have any number.
+const MOST_TOGETHER: usize = 4 << 20;
+
+/// Letters of a buffer's key.
+const KEY: usize = 32;
 
 /// Letters that a name of a tab may have.
 const LONGEST_TAB: usize = 64;
@@ -57,7 +70,7 @@ fn method_of(path: &str) -> Option<&'static str> {
     match path {
         "" | "events" | "frame" => Some("GET"),
         "set" | "write" | "stop" | "show" | "refine" | "compare" | "cursor" => Some("POST"),
-        _ => path.strip_prefix("buffer/").map(|_| "GET"),
+        _ => path.strip_prefix("buffers/").map(|_| "GET"),
     }
 }
 
@@ -81,10 +94,27 @@ fn get(shared: &Shared, path: &str, head: &Head) -> Answer {
             Some(json) => Answer::packed("application/json", &json, head.takes_gzip()),
             None => Answer::nothing(),
         },
-        _ => match path.strip_prefix("buffer/").and_then(|key| shared.frames.buffer(key)) {
-            Some(buffer) => Answer::packed("application/octet-stream", &buffer, head.takes_gzip()).kept(Keep::Forever),
-            None => Answer::refusal(404, "no recent frame has this buffer"),
-        },
+        _ => buffers(shared, path.strip_prefix("buffers/").unwrap_or_default(), head),
+    }
+}
+
+/// The buffers of some keys with `+` between them: one as it is, or compressed; several one after the other, where one that no recent frame
+/// has is left out and has `-` for its length.
+fn buffers(shared: &Shared, keys: &str, head: &Head) -> Answer {
+    let media = "application/octet-stream";
+    let keys: Vec<&str> = keys.split('+').collect();
+    let is_key = |key: &&str| key.len() == KEY && key.bytes().all(|b| b.is_ascii_digit() || (b'a'..=b'f').contains(&b));
+    if keys.len() > MOST_BUFFERS || !keys.iter().all(is_key) || keys.iter().collect::<BTreeSet<_>>().len() < keys.len() {
+        return Answer::refusal(400, &format!("buffers are asked for by different keys of {KEY} hex digits, {MOST_BUFFERS} at most"));
+    }
+    let found: Vec<Option<Arc<Packed>>> = keys.iter().map(|key| shared.frames.buffer(key)).collect();
+    match &found[..] {
+        [Some(buffer)] => Answer::packed(media, buffer, head.takes_gzip()).kept(Keep::Forever),
+        [None] => Answer::refusal(404, "no recent frame has this buffer"),
+        _ if found.iter().flatten().map(|buffer| buffer.plain().len()).sum::<usize>() > MOST_TOGETHER => {
+            Answer::refusal(413, "these buffers are too many bytes for one answer; ask for some of them")
+        }
+        _ => Answer::several(media, &found),
     }
 }
 

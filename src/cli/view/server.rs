@@ -161,6 +161,14 @@ impl Shared {
     fn is_over(&self) -> bool {
         self.over.load(Ordering::Relaxed)
     }
+
+    /// Keeps a frame and tells the pages, unless there is a newer one.
+    fn show(&self, number: u64, frame: Frame) {
+        if self.frames.publish(number, frame) {
+            let (newest, json) = self.frames.newest_told();
+            self.events.frame(newest, json);
+        }
+    }
 }
 
 /// Takes connections; each has a thread of its own, and their number is bounded.
@@ -219,9 +227,7 @@ fn evaluate(shared: &Arc<Shared>, mut model: Box<dyn Model>) {
         let started = SystemTime::now();
         let (to, number) = (shared.clone(), running.number - 1);
         running.evaluation.show_partial_by(Box::new(move |frame| {
-            if to.frames.publish(number, frame) {
-                to.events.frame(number);
-            }
+            to.show(number, frame);
         }));
         // What a panic leaves behind is the model's business: the next evaluation finds it.
         let evaluated = catch_unwind(AssertUnwindSafe(|| model.evaluate(&request, &running.evaluation)));
@@ -235,8 +241,8 @@ fn evaluate(shared: &Arc<Shared>, mut model: Box<dyn Model>) {
             }
             Err(_) => Some(message_frame(shared, running.number, ("error", "bug"), BUG)),
         };
-        if frame.is_some_and(|frame| shared.frames.publish(running.number, frame)) {
-            shared.events.frame(running.number);
+        if let Some(frame) = frame {
+            shared.show(running.number, frame);
         }
         if more && !running.evaluation.is_stopped() {
             shared.work.again();
@@ -252,9 +258,7 @@ fn evaluate(shared: &Arc<Shared>, mut model: Box<dyn Model>) {
 fn end_partial(shared: &Shared) {
     if shared.frames.is_partial() {
         let number = shared.frames.number() + 1;
-        if shared.frames.publish(number, message_frame(shared, number, ("note", "stopped"), STOPPED)) {
-            shared.events.frame(number);
-        }
+        shared.show(number, message_frame(shared, number, ("note", "stopped"), STOPPED));
     }
 }
 

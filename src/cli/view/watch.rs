@@ -9,7 +9,7 @@ use std::time::{Duration, Instant, SystemTime};
 use super::file_state::{FileState, Look};
 
 /// Time between two looks.
-const REST: Duration = Duration::from_millis(10);
+const REST: Duration = Duration::from_millis(5);
 
 /// Time between two looks at files that are changing.
 const SHORT_REST: Duration = Duration::from_millis(3);

@@ -4,6 +4,7 @@ import { BufferAttribute, BufferGeometry } from 'three';
 import { MeshBVH } from 'three-mesh-bvh';
 import { faceGeometry, lineGeometry, meshGeometry, meshTriangles, pointGeometry, segmentsOf } from './geometry.js';
 import { ask } from './tasks.js';
+import { grouped } from './together.js';
 import { readBuffer } from './wire.js';
 
 /** One buffer: its arrays, what is drawn of it, and a tree over its triangles for picking. */
@@ -86,27 +87,26 @@ export class Buffers {
     this.fetched = 0; // Bytes over the wire since the page was opened.
   }
 
-  /** Makes sure that all keys are here; only missing ones are fetched. */
-  load(keys, fetchBytes) {
-    const missing = [...new Set(keys)].filter((key) => !this.held.has(key));
-    return Promise.all(
-      missing.map((key) => {
-        if (!this.coming.has(key)) {
-          this.coming.set(
-            key,
-            fetchBytes(key)
-              .then((bytes) => {
-                this.fetched += bytes.byteLength;
-                const buffer = new Buffer(key, bytes);
-                this.held.set(key, buffer);
-                if (buffer.index?.length > 0) this.treeless.push(buffer);
-              })
-              .finally(() => this.coming.delete(key)),
-          );
-        }
-        return this.coming.get(key);
-      }),
-    );
+  /**
+   * Makes sure that the buffers of these rows are here; only missing ones are fetched. `fetchBytes(keys)` gives the bytes of
+   * each key that there is.
+   */
+  load(rows, fetchBytes) {
+    const missing = new Map(rows.filter(({ key }) => !this.held.has(key)).map((row) => [row.key, row]));
+    for (const keys of grouped([...missing.values()].filter(({ key }) => !this.coming.has(key)))) {
+      const all = fetchBytes(keys);
+      const one = (key) => all.then((found) => this.take(key, found.get(key))).finally(() => this.coming.delete(key));
+      for (const key of keys) this.coming.set(key, one(key));
+    }
+    return Promise.all([...missing.keys()].map((key) => this.coming.get(key)));
+  }
+
+  take(key, bytes) {
+    if (!bytes) throw new Error(`the server no longer has its buffer ${key}`);
+    this.fetched += bytes.byteLength;
+    const buffer = new Buffer(key, bytes);
+    this.held.set(key, buffer);
+    if (buffer.index?.length > 0) this.treeless.push(buffer);
   }
 
   get(key) {

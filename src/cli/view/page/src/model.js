@@ -33,8 +33,8 @@ export class Model {
    */
   async show(frame, server) {
     const turn = ++this.newest;
-    const keys = keysOf(frame);
-    await this.buffers.load(keys, (key) => server.buffer(key));
+    const rows = rowsOf(frame);
+    await this.buffers.load(rows, (keys) => server.buffers(keys));
     if (turn !== this.newest) return false;
     this.frame = frame;
     this.byName = new Map(frame.things.map((thing) => [thing.name, thing]));
@@ -44,7 +44,7 @@ export class Model {
     this.compared = this.renew(this.compared, frame.compare?.things ?? []);
     for (const drawing of this.compared) drawing.ghost = true;
     // What a partial frame leaves out may come again with the whole one.
-    this.buffers.keep(frame.partial && this.whole ? [...keys, ...keysOf(this.whole)] : keys);
+    this.buffers.keep([...rows, ...(frame.partial && this.whole ? rowsOf(this.whole) : [])].map(({ key }) => key));
     this.fitFirst(frame);
     return true;
   }
@@ -161,8 +161,7 @@ export class Model {
 /** Whether a thing is still to be made and was not there before. */
 export const isAwaited = (thing) => Boolean(thing.pending) && !(thing.buffers?.length > 0);
 
-const keysOf = ({ things, compare }) =>
-  [...things, ...(compare?.things ?? [])].flatMap((thing) => (thing.buffers ?? []).map((buffer) => buffer.key));
+const rowsOf = ({ things, compare }) => [...things, ...(compare?.things ?? [])].flatMap((thing) => thing.buffers ?? []);
 
 const isWithin = (box, other) => [0, 1, 2].every((i) => box[0][i] >= other[0][i] && box[1][i] <= other[1][i]);
 

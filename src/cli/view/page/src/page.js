@@ -34,6 +34,7 @@ export function startPage() {
     document.body.classList.add('unable');
     return;
   }
+  let awaited = null; // A frame whose panes are made as soon as its picture is drawn.
   const model = new Model(stage, state);
   const section = new Section(stage, state);
   const shades = new Shades(model, stage, state);
@@ -93,7 +94,7 @@ export function startPage() {
     section.update();
     shades.apply((legend) => app.legend.show(legend)).then(() => app.control.updateCaps());
     app.selection.mark();
-    app.panes.drawTree();
+    if (!awaited) app.panes.drawTree();
     app.toolbar.update(
       section.plane ? `${'xyz'['xyz'.indexOf(state.get().cut.axis)]} = ${section.at.toPrecision(5).replace(/\.?0+$/, '')}` : '',
     );
@@ -134,6 +135,14 @@ export function startPage() {
     (x, y) => app.selection.at(x, y)?.point ?? null,
   );
 
+  function drawPanes(frame) {
+    app.panes.setFrame(frame);
+    // Lines may have moved: the chain of what is chosen is that of the new text.
+    const chosen = model.thing(app.selection.thing);
+    if (chosen || (app.selection.thing && !frame.partial)) app.panes.script.setChain(chosen?.chain ?? [], false);
+    app.panes.drawTree();
+  }
+
   async function takeFrame(given, times) {
     const frame = completed(given, model.whole);
     try {
@@ -148,10 +157,7 @@ export function startPage() {
     app.selection.renew();
     document.title = `${frame.partial ? '… ' : frame.ok ? '' : '● '}${frame.title}`;
     app.recolor();
-    app.panes.setFrame(frame);
-    // Lines may have moved: the chain of what is chosen is that of the new text.
-    const chosen = model.thing(app.selection.thing);
-    if (chosen || (app.selection.thing && !frame.partial)) app.panes.script.setChain(chosen?.chain ?? [], false);
+    awaited = frame;
     app.marks.setDiagnostics(frame.diagnostics, frame.units);
     stage.invalidate();
     model.times = { ...times, loaded: performance.now(), number: frame.number };
@@ -164,6 +170,9 @@ export function startPage() {
       model.times.shown = performance.now();
       app.status.frame(model.frame, model.times);
     }
+    const frame = awaited;
+    awaited = null;
+    if (frame) drawPanes(frame);
   });
   window.loftView = seam(app);
 }

@@ -1,5 +1,6 @@
 // The connection with `loft view`: frames, buffers, events and requests. An older frame never follows a newer one.
 
+import { parted } from './together.js';
 import { unpack } from './wire.js';
 
 /** Where the model comes from: the server, or the element #model of the one-file page. */
@@ -27,35 +28,34 @@ function fromServer({ onFrame, onWork, onGone, onCursor, onConnection }) {
   const base = location.pathname.replace(/[^/]*$/, '');
   const tab = Math.random().toString(36).slice(2, 10);
   let newest = -1; // The number of the newest frame that was taken.
-  let asked = false; // Whether another frame came while one was fetched.
-  let fetching = false;
-  let heard = 0; // When the event came that the frame follows.
+  let next = null; // The newest frame that was told and is not taken yet.
+  let taking = false;
   let wait = 250;
 
   async function fetchFrame() {
-    if (fetching) {
-      asked = true;
-      return;
-    }
-    fetching = true;
-    do {
-      asked = false;
-      const began = performance.now();
+    const answer = await fetch(`${base}frame`, { cache: 'no-store' });
+    return answer.ok ? answer.json() : null;
+  }
+
+  /** Takes what was told last. A frame is shown before the next is taken, so that fast saves still move the picture. */
+  async function take() {
+    if (taking) return;
+    taking = true;
+    while (next) {
+      const { frame: told, heard } = next;
+      next = null;
       try {
-        const answer = await fetch(`${base}frame`, { cache: 'no-store' });
-        if (answer.ok) {
-          const frame = await answer.json();
-          if (frame.number > newest) {
-            newest = frame.number;
-            // A frame is shown before the next is fetched, so that fast saves still move the picture.
-            await onFrame(frame, { heard: heard || began, fetched: performance.now() });
-          }
+        // A large frame does not stand in its event.
+        const frame = told ?? (await fetchFrame());
+        if (frame?.number > newest) {
+          newest = frame.number;
+          await onFrame(frame, { heard, fetched: performance.now() });
         }
       } catch {
-        // The events tell that the connection is lost, and a frame is fetched when it is back.
+        // The events tell that the connection is lost, and what the newest frame is when it is back.
       }
-    } while (asked);
-    fetching = false;
+    }
+    taking = false;
   }
 
   let events = null;
@@ -68,20 +68,20 @@ function fromServer({ onFrame, onWork, onGone, onCursor, onConnection }) {
     events.addEventListener('open', () => {
       wait = 250;
       onConnection(true);
-      fetchFrame();
     });
     events.addEventListener('error', () => {
       // A server that starts again has another count of frames, so the next one is taken whatever its number is.
       onConnection(false);
       quiet();
+      next = null;
       newest = -1;
       setTimeout(listen, wait);
       wait = Math.min(wait * 2, 4000);
     });
-    on('frame', ({ number }) => {
+    on('frame', ({ number, frame }) => {
       if (number <= newest) return;
-      heard = performance.now();
-      fetchFrame();
+      next = { frame, heard: performance.now() };
+      take();
     });
     on('work', onWork);
     on('gone', onGone);
@@ -98,11 +98,12 @@ function fromServer({ onFrame, onWork, onGone, onCursor, onConnection }) {
 
   return {
     live: true,
-    /** The bytes of a buffer. */
-    async buffer(key) {
-      const answer = await fetch(`${base}buffer/${key}`);
-      if (!answer.ok) throw new Error(`buffer ${key}: ${answer.status}`);
-      return answer.arrayBuffer();
+    /** The bytes of buffers by key, without those that the server no longer has. */
+    async buffers(keys) {
+      const answer = await fetch(`${base}buffers/${keys.join('+')}`);
+      if (answer.status === 404) return new Map();
+      if (!answer.ok) throw new Error(`the server answered ${answer.status}`);
+      return parted(keys, answer.headers.get('Part-Lengths'), await answer.arrayBuffer());
     },
     post: (what, body = {}) => post(`${base}${what}`, body),
   };
@@ -116,8 +117,8 @@ function fromDocument(model, { onFrame, onConnection }) {
   });
   return {
     live: false,
-    async buffer(key) {
-      return unpack(model.buffers[key]);
+    async buffers(keys) {
+      return new Map(await Promise.all(keys.map(async (key) => [key, await unpack(model.buffers[key])])));
     },
     post: async () => ({ ok: false, message: 'this page holds a model that is not running' }),
   };

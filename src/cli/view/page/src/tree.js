@@ -53,9 +53,7 @@ export function createTree(holder, search, model, state, on) {
     const shown = sections.filter(Boolean);
     const none = wanted ? 'Nothing has this name.' : frame.partial ? 'Evaluating…' : 'The script declares nothing yet.';
     if (!shown.length) shown.push(element('p', { class: 'empty', text: none }));
-    const top = holder.scrollTop;
     holder.replaceChildren(...shown);
-    holder.scrollTop = top;
     const rows = [...holder.querySelectorAll('[role=treeitem]')];
     const again = rows.find((row) => row.dataset.key === focused);
     (again ?? rows[0])?.setAttribute('tabindex', '0');
