@@ -754,12 +754,21 @@ fn what_the_page_asks_reaches_the_model() {
     view.frame_with(|frame| frame["sets"] == json!([["w", "5 m"]]));
     check("refine", json!({ "error": 0.01 }), ok.clone());
     view.frame_with(|frame| frame["chord_error"] == 0.01);
-    check("compare", json!({ "with": "revision:HEAD~1" }), ok.clone());
-    view.frame_with(|frame| frame["compare"] == "Some(Revision(\"HEAD~1\"))");
-    check("compare", json!({ "with": "golden" }), ok.clone());
-    view.frame_with(|frame| frame["compare"] == "Some(Golden)");
-    check("compare", json!({ "with": null }), ok.clone());
-    view.frame_with(|frame| frame["compare"] == "None");
+    for (with, told) in [
+        (json!("revision:HEAD~1"), "Some(Revision(\"HEAD~1\"))"),
+        (json!("revision:fix/#7+größe"), "Some(Revision(\"fix/#7+größe\"))"),
+        (json!("golden"), "Some(Golden)"),
+        (json!(null), "None"),
+    ] {
+        let got = view.post("compare", &json!({ "with": with })).json();
+        let frame = view.frame_with(|frame| frame["compare"] == told);
+        assert_eq!(got, json!({ "ok": true, "from": frame["number"] }));
+    }
+    for name in ["--output=x", "", "a\nb", &"é".repeat(201)] {
+        let got = view.post("compare", &json!({ "with": format!("revision:{name}") }));
+        assert!(got.status == 200 && got.json()["ok"] == false, "{name}");
+        assert!(got.json()["message"].as_str().unwrap().starts_with("a revision is named by"));
+    }
     check("show", json!({ "file": "model.loft", "line": 3 }), ok.clone());
     check("show", json!({ "file": "other.loft", "line": 3 }), json!({ "ok": false, "message": "no editor is attached" }));
     check("cursor", json!({ "file": "model.loft", "line": 7 }), ok.clone());
@@ -773,9 +782,9 @@ fn what_the_page_asks_reaches_the_model() {
         ("set", json!([1])),
         ("refine", json!({ "error": 0 })),
         ("refine", json!({ "error": "x" })),
-        ("compare", json!({ "with": "revision:--output=x" })),
-        ("compare", json!({ "with": "revision:a;b" })),
-        ("compare", json!({ "with": "revision:" })),
+        ("compare", json!({ "with": "HEAD" })),
+        ("compare", json!({ "with": 3 })),
+        ("compare", json!({})),
         ("show", json!({ "file": "model.loft", "line": -3 })),
         ("cursor", json!(null)),
     ] {
@@ -813,15 +822,6 @@ fn buffers_stay_for_two_frames_and_for_who_may_be_fetching_them() {
     view.replace("buffer 7\n");
     assert_eq!(tab.frame(), 14);
     assert_eq!((view.get(&path(20_000)).status, shared.frames.size()), (404, (2, 13)));
-}
-
-#[test]
-fn an_old_frame_never_overwrites_a_new_one() {
-    let frames = view::frames::Frames::default();
-    let frame = |text: &str| Frame { json: format!("\"{text}\""), buffers: Vec::new() };
-    assert!(frames.publish(2, frame("two")));
-    assert!(!frames.publish(1, frame("one")) && !frames.publish(2, frame("again")));
-    assert_eq!((frames.number(), frames.newest().unwrap().plain().as_slice()), (2, b"\"two\"".as_slice()));
     assert_eq!((view.get(&path(2)).status, view.get(&path(6)).status), (404, 200));
 }
 
@@ -868,6 +868,15 @@ fn one_answer_has_many_buffers() {
         assert_eq!(view.get(&format!("buffers/{keys}")).status, 400, "{keys}");
     }
     assert_eq!(view.get(&format!("buffers/{}", vec![key.as_str(); 600].join("+"))).status, 431);
+}
+
+#[test]
+fn an_old_frame_never_overwrites_a_new_one() {
+    let frames = view::frames::Frames::default();
+    let frame = |text: &str| Frame { json: format!("\"{text}\""), buffers: Vec::new() };
+    assert!(frames.publish(2, frame("two")));
+    assert!(!frames.publish(1, frame("one")) && !frames.publish(2, frame("again")));
+    assert_eq!((frames.number(), frames.newest().unwrap().plain().as_slice()), (2, b"\"two\"".as_slice()));
     assert!(frames.publish(3, frame("three")));
     assert_eq!(frames.newest().unwrap().plain().as_slice(), b"\"three\"");
 }

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use lofting::cli::view::model::{Compare, Evaluation, Model, Request};
 use lofting::cli::view::shown_model::ShownModel;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 const SCRIPT: &str =
     "units m\nuse \"lower.loft\" as lower\ncurve top = line((0, 0, 1), (3, 0, 1))\nsurface wall = ruled(lower.foot, top)\n";
@@ -26,13 +26,15 @@ fn shown(model: &mut ShownModel, text: &str, compare: Compare) -> Value {
     if evaluated.more {
         // The model alone was shown first.
         let first: Value = serde_json::from_str(&evaluated.frame.unwrap().json).unwrap();
-        assert!(first["compare"].is_null() && first["things"].as_array().is_some_and(|things| !things.is_empty()));
+        assert!(first["compare"]["pending"] == true && first["compare"]["things"] == json!([]));
+        assert!(first["things"].as_array().is_some_and(|things| !things.is_empty()));
         request.again = true;
         evaluated = model.evaluate(&request, &Evaluation::default());
     }
     assert!(!evaluated.more);
-    let frame = evaluated.frame.unwrap();
-    serde_json::from_str(&frame.json).unwrap()
+    let frame: Value = serde_json::from_str(&evaluated.frame.unwrap().json).unwrap();
+    assert_eq!(frame["compare"]["pending"], false);
+    frame
 }
 
 /// The area of the wall beside the model.
@@ -67,6 +69,8 @@ fn another_revision_has_the_files_of_then() {
     let of = |model: &mut ShownModel, compare: Compare| area_of_then(&shown(model, SCRIPT, compare));
     assert_eq!(of(&mut model, Compare::Revision("HEAD".to_owned())).as_deref(), Some("4 m²"));
     assert_eq!(of(&mut model, Compare::Revision("HEAD~1".to_owned())).as_deref(), Some("3 m²"));
+    git(&folder, &["tag", "fix/#7+größe", "HEAD~1"]);
+    assert_eq!(of(&mut model, Compare::Revision("fix/#7+größe".to_owned())).as_deref(), Some("3 m²"));
     assert_eq!(of(&mut model, Compare::Golden).as_deref(), Some("3 m²"), "of the commit that wrote the golden");
     let own = shown(&mut model, SCRIPT, Compare::Golden);
     let wall = own["things"].as_array().unwrap().iter().find(|thing| thing["name"] == "wall").unwrap();

@@ -9,7 +9,7 @@ const TOKEN = 'f'.repeat(32);
 
 /** Starts it; `onSet(name, text)` may give a new model. */
 export async function startFake(model, { onSet, page = readFileSync(PAGE, 'utf8') } = {}) {
-  const fake = { model, asked: [], posts: [], streams: new Set(), inFlight: 0, mostInFlight: 0, delays: new Map() };
+  const fake = { model, asked: [], posts: [], streams: new Set(), inFlight: 0, mostInFlight: 0, delays: new Map(), answers: {} };
   const kept = new Map(model.buffers);
 
   // A frame stands in its event unless a test delays it, or it is large.
@@ -48,7 +48,8 @@ export async function startFake(model, { onSet, page = readFileSync(PAGE, 'utf8'
         const next = onSet?.(asked.name, asked.text);
         if (next) fake.show(next);
       }
-      return answer(200, 'application/json', JSON.stringify(what === 'show' ? { ok: false } : { ok: true }));
+      const usual = { show: { ok: false }, compare: { ok: true, from: fake.model.frame.number + 1 } };
+      return answer(200, 'application/json', JSON.stringify(fake.answers[what] ?? usual[what] ?? { ok: true }));
     }
     if (what === '') return answer(200, 'text/html; charset=utf-8', page);
     if (what === 'frame') {

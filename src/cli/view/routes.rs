@@ -145,7 +145,7 @@ fn post(shared: &Shared, path: &str, body: &[u8]) -> Answer {
         "write" => write(shared, &asked),
         "show" => show(shared, &asked),
         "refine" => refine(shared, &asked),
-        "compare" => compare(shared, &asked),
+        "compare" => return compare(shared, &asked),
         "cursor" => cursor(shared, &asked),
         _ => {
             shared.work.stop();
@@ -196,21 +196,26 @@ fn refine(shared: &Shared, asked: &Value) -> Done {
     Some(Ok(()))
 }
 
-fn compare(shared: &Shared, asked: &Value) -> Done {
-    let with = match asked.get("with")? {
-        Value::Null => None,
-        Value::String(text) if text == "golden" => Some(Compare::Golden),
-        Value::String(text) => {
-            // It becomes an argument of another program, never one of its options.
-            let revision = text.strip_prefix("revision:")?;
-            let first = revision.bytes().next()?;
-            let sound = revision.len() <= 200 && revision.bytes().all(|b| b.is_ascii_alphanumeric() || b"-._/~^@{}".contains(&b));
-            Some(Compare::Revision((sound && first != b'-').then(|| revision.to_owned())?))
-        }
-        _ => return None,
+/// The answer has the number of the first frame that knows of it, so that a page can tell it from frames of before.
+fn compare(shared: &Shared, asked: &Value) -> Answer {
+    let with = match asked.get("with").map(|with| (with, with.as_str().unwrap_or_default())) {
+        Some((Value::Null, _)) => None,
+        Some((_, "golden")) => Some(Compare::Golden),
+        Some((_, text)) => match text.strip_prefix("revision:") {
+            Some(name) if is_revision(name) => Some(Compare::Revision(name.to_owned())),
+            Some(_) => return Answer::json(&json!({ "ok": false, "message": NO_REVISION })),
+            None => return wrong("`compare` does not understand this"),
+        },
+        None => return wrong("`compare` does not understand this"),
     };
-    shared.work.compare(with);
-    Some(Ok(()))
+    Answer::json(&json!({ "ok": true, "from": shared.work.compare(with) }))
+}
+
+const NO_REVISION: &str = "a revision is named by a branch, a tag or a commit, in 200 characters at most and without `-` before it";
+
+/// It becomes an argument of another program, never one of its options.
+fn is_revision(name: &str) -> bool {
+    (1..=200).contains(&name.chars().count()) && !name.starts_with('-') && !name.chars().any(char::is_control)
 }
 
 fn cursor(shared: &Shared, asked: &Value) -> Done {

@@ -282,6 +282,10 @@ fn message_frame(shared: &Shared, number: u64, (severity, code): (&str, &str), m
         }
     }
     frame["partial"] = false.into();
+    if frame["compare"]["pending"] == true {
+        frame["compare"]["pending"] = false.into();
+        frame["compare"]["failed"] = message.into();
+    }
     frame["diagnostics"] = json!([{ "severity": severity, "code": code, "message": message, "help": null, "places": [], "points": [],
         "size": null, "things": [] }]);
     Frame { json: frame.to_string(), buffers }

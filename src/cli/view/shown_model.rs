@@ -40,9 +40,8 @@ struct OtherState {
 
 /// Another state of the model.
 enum Other {
-    Made(frame::Compare),
-    /// It is not evaluated yet.
-    Missing,
+    /// As it is known: it may be pending, or have failed.
+    Known(frame::Compare),
     Stopped,
 }
 
@@ -93,7 +92,7 @@ impl ShownModel {
             Compare::Golden => "golden".to_owned(),
             Compare::Revision(name) => format!("revision:{name}"),
         };
-        let failed = |why: String| Other::Made(frame::Compare { with: with.clone(), things: Vec::new(), failed: Some(why) });
+        let failed = |why: String| Other::Known(frame::Compare { with: with.clone(), failed: Some(why), ..frame::Compare::default() });
         let revision = match self.revision(compare) {
             Ok(revision) => revision,
             Err(why) => return failed(why),
@@ -105,7 +104,7 @@ impl ShownModel {
                 Err(why) => return failed(why),
             };
             if !may_evaluate {
-                return Other::Missing;
+                return Other::Known(frame::Compare { with, pending: true, ..frame::Compare::default() });
             }
             match self.at_revision(&state.revision, &Wanted { text, ..wanted.clone() }, job) {
                 Ok(Some(view)) => self.other = Some((state, view)),
@@ -117,7 +116,7 @@ impl ShownModel {
         let error = frame.diagnostics.iter().find(|said| said.severity == "error");
         match error {
             Some(error) if frame.things.is_empty() => failed(format!("the script of then is wrong today: {}", error.message)),
-            _ => Other::Made(frame::Compare { with, things: frame.things.clone(), failed: None }),
+            _ => Other::Known(frame::Compare { with, things: frame.things.clone(), ..frame::Compare::default() }),
         }
     }
 
@@ -172,14 +171,14 @@ impl Model for ShownModel {
         let mut more = false;
         if let Some(compare) = &request.compare {
             match self.other(compare, &wanted, &job, request.again) {
-                Other::Made(other) => {
-                    if let (None, Some((_, other))) = (&other.failed, &self.other) {
+                Other::Known(other) => {
+                    if let (false, Some((_, other))) = (other.things.is_empty(), &self.other) {
                         view.buffers.extend(other.buffers.iter().map(|(key, buffer)| (key.clone(), buffer.clone())));
                     }
+                    // The model is seen before what it is compared with is made.
+                    more = other.pending;
                     view.frame.compare = Some(other);
                 }
-                // The model is seen before what it is compared with is made.
-                Other::Missing => more = true,
                 Other::Stopped => return Evaluated::default(),
             }
         }

@@ -20,6 +20,9 @@ const ANNOUNCED_AFTER: Duration = Duration::from_millis(100);
 /// How long the file has to change after a default was written into it.
 const WRITTEN: Duration = Duration::from_millis(100);
 
+/// From the number of one whole frame to the next: its partial frame has the number between.
+const STEP: u64 = 2;
+
 /// Params that can be set at once.
 const MOST_SETS: usize = 1000;
 
@@ -115,9 +118,14 @@ impl Work {
         self.change(false, |state| state.wanted.chord_error = Some(error));
     }
 
-    /// The model is compared with this from now on.
-    pub fn compare(&self, with: Option<Compare>) {
-        self.change(false, |state| state.wanted.compare = with);
+    /// The model is compared with this from now on. Gives the number of the first whole frame that knows of it.
+    pub fn compare(&self, with: Option<Compare>) -> u64 {
+        let mut first = 0;
+        self.change(false, |state| {
+            state.wanted.compare = with;
+            first = state.wanted.number + STEP;
+        });
+        first
     }
 
     /// The model of a request was shown before its comparison, which follows unless something changed.
@@ -159,8 +167,7 @@ impl Work {
         state.taken = state.changes;
         state.hurry = false;
         state.expected = None;
-        // Its partial frame has the number before.
-        state.wanted.number += 2;
+        state.wanted.number += STEP;
         let (number, started) = (state.wanted.number, Instant::now());
         let running = Arc::new(Running { number, evaluation: Evaluation::default(), started, announced: AtomicBool::new(false) });
         state.running = Some(running.clone());

@@ -215,6 +215,8 @@ pub struct Output {
 pub struct Compare {
     /// What it is: `revision:HEAD`.
     pub with: String,
+    /// It is not evaluated yet; a frame that has it, or tells why it cannot be made, follows.
+    pub pending: bool,
     /// Its things.
     pub things: Vec<Thing>,
     /// Why it could not be made.

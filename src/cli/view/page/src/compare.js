@@ -1,66 +1,78 @@
-// Comparing with another state of the model: what was asked for, and what is said until its frame is there.
+// Comparing with another state of the model: what was asked for, what frames say of it, and what is told until it is there.
 
 const WORDS = { golden: 'the golden', 'revision:HEAD': 'the last commit' };
 
-const wordsOf = (other) => WORDS[other] ?? other.replace(/^revision:/, '');
+/** What a person calls another state. */
+export const wordsOf = (other) => WORDS[other] ?? other.replace(/^revision:/, '');
 
 export class Comparison {
-  constructor(app) {
+  /** `note` is the element that tells how the comparison is going. */
+  constructor(app, note) {
     this.app = app;
-    this.wanted = ''; // The state to compare with, or '' for none.
-    this.awaited = null; // The same while no frame has it yet.
-    this.said = false; // Whether the message of this is shown.
-    this.failure = null; // Why the state cannot be made, where the page has said so.
+    this.note = note;
+    this.asked = null; // What was asked for here, until a frame knows of it: { other, from }.
+    this.refused = null; // What the server did not take, and why: { other, why }.
+    this.now = null; // What the newest whole frame says.
+    this.number = 0; // Its number.
   }
 
-  /** What the page shows as the other state: the one that is wanted, even before it is there. */
+  /** The other state that is wanted, or '' for none. */
   get shown() {
-    return this.awaited ?? this.wanted;
+    return this.asked?.other ?? this.now?.with ?? '';
   }
 
   /** Whether another state is being evaluated. */
   get running() {
-    return Boolean(this.awaited);
+    return this.asked ? this.asked.other !== '' : Boolean(this.now?.pending);
   }
 
   /** Asks for another state, or for none. */
   async ask(other) {
-    const { control, server, toolbar } = this.app;
-    const before = this.wanted;
-    this.end(other ?? '');
-    this.awaited = this.wanted;
-    this.failure = null;
-    if (other) {
-      control.tell(`The model of ${wordsOf(other)} is evaluated for the comparison; until then the picture shows today's alone.`);
-      this.said = true;
-    }
-    toolbar.update();
-    const answer = await server.post('compare', { with: other });
-    if (answer.ok !== false || this.awaited !== (other ?? '')) return;
-    this.end(before);
-    this.refused(answer.message ?? 'the server refused');
+    const asked = { other: other ?? '', from: Infinity };
+    this.asked = asked;
+    this.refused = null;
+    this.tell();
+    const answer = await this.app.server.post('compare', { with: other });
+    if (this.asked !== asked) return;
+    if (answer.ok === false) {
+      this.asked = null;
+      this.refused = { other: asked.other, why: answer.message ?? 'the server refused' };
+    } else asked.from = answer.from ?? 0;
+    this.follow();
   }
 
-  /** Looks whether a frame has what is wanted. Today's model may come alone before, also when a param was moved. */
-  took({ partial, compare }) {
+  /** Takes what a frame says. Another tab may have asked for something else. */
+  took({ partial, compare, number }) {
     if (partial) return;
-    const there = compare?.with ?? '';
-    this.awaited ??= there || this.wanted;
-    if (this.awaited === there) this.end(there);
-    if (compare?.failed && compare.failed !== this.failure) this.refused(compare.failed, there);
-    if (compare) this.failure = compare.failed;
+    if ((compare?.with ?? '') !== (this.now?.with ?? '')) this.refused = null;
+    this.now = compare;
+    this.number = number;
+    this.follow();
   }
 
-  /** Waits no longer. */
-  end(wanted = this.app.model.frame?.compare?.with ?? '') {
-    if (this.said) this.app.control.tell(null);
-    this.said = false;
-    this.wanted = wanted;
-    this.awaited = null;
-    this.app.toolbar.update();
+  /** The connection is lost, and with it what was asked for. */
+  lost() {
+    this.asked = null;
+    this.number = 0;
+    this.tell();
   }
 
-  refused(why, other) {
-    this.app.control.tell(`Nothing to compare with${other ? ` in ${wordsOf(other)}` : ''}: ${why}.`.replace(/\.\.$/, '.'), 8);
+  /** Frames of before the server took a request do not know of it. */
+  follow() {
+    if (this.number >= this.asked?.from) this.asked = null;
+    this.tell();
+  }
+
+  tell() {
+    const { refused, now } = this;
+    const failed = refused ?? (!this.asked && now?.failed ? { other: now.with, why: now.failed } : null);
+    const text = failed
+      ? `Not compared with ${wordsOf(failed.other)}: ${failed.why}`
+      : this.running
+        ? `The model of ${wordsOf(this.shown)} is evaluated for the comparison; until then the picture shows today's alone.`
+        : '';
+    if (this.note.textContent !== text) this.note.textContent = text;
+    this.note.hidden = !text;
+    this.app.toolbar?.update();
   }
 }

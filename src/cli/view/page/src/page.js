@@ -41,7 +41,7 @@ export function startPage() {
   const app = { state, stage, model, section, shades };
   app.selection = new Selection(app);
   app.control = createControl(app, byId);
-  app.comparison = new Comparison(app);
+  app.comparison = new Comparison(app, byId('comparison'));
 
   app.server = connect({
     onFrame: (frame, times) => takeFrame(frame, times),
@@ -53,7 +53,7 @@ export function startPage() {
       app.status.connection(connected, app.server?.live ?? true);
       if (!connected) {
         app.status.work(null);
-        app.comparison.end();
+        app.comparison.lost();
       }
       if (connected && !model.frame) app.control.tell('The script is evaluated; the picture comes when it is done.');
     },
@@ -152,7 +152,7 @@ export function startPage() {
       if (!frame.partial) app.control.tell(`Frame ${frame.number} could not be shown: ${error.message}`);
       return;
     }
-    if (!app.comparison.said) app.control.settle();
+    app.control.settle();
     app.comparison.took(frame);
     app.selection.renew();
     document.title = `${frame.partial ? '… ' : frame.ok ? '' : '● '}${frame.title}`;

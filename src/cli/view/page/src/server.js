@@ -16,9 +16,8 @@ async function post(path, body) {
       headers: { 'Content-Type': 'application/json' },
       body: JSON.stringify(body),
     });
-    if (!answer.ok) return { ok: false, message: `the server answered ${answer.status}` };
-    const text = await answer.text();
-    return text ? JSON.parse(text) : { ok: true };
+    const said = await answer.json().catch(() => null);
+    return said ?? { ok: answer.ok, message: `the server answered ${answer.status}` };
   } catch {
     return { ok: false, message: 'no connection' };
   }
@@ -73,8 +72,8 @@ function fromServer({ onFrame, onWork, onGone, onCursor, onConnection }) {
       // A server that starts again has another count of frames, so the next one is taken whatever its number is.
       onConnection(false);
       quiet();
-      next = null;
       newest = -1;
+      next = null;
       setTimeout(listen, wait);
       wait = Math.min(wait * 2, 4000);
     });

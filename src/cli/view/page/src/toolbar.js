@@ -1,5 +1,6 @@
 // The bar above: shades, standard views, projection, section, measure, compare, theme, and the panes at the sides.
 
+import { createCompareChoice } from './compare_choice.js';
 import { button, element, icon } from './dom.js';
 import { SHADES } from './shades.js';
 
@@ -19,15 +20,7 @@ export function createToolbar(holder, state, model, { run, shade, cut, compare, 
   const flat = button('Orthographic (O)', 'box', () => run('flat'), { 'aria-pressed': 'false' });
   const section = button('Section plane (S)', 'cut', () => run('section'), { 'aria-pressed': 'false' });
   const measure = button('Measure between two picks (M)', 'measure', () => run('measure'), { 'aria-pressed': 'false' });
-  const others = element(
-    'select',
-    { id: 'compare', 'aria-label': 'Compare with', onchange: () => compare(others.value || null) },
-    [
-      ['', 'Compare…'],
-      ['golden', 'with the golden'],
-      ['revision:HEAD', 'with the last commit'],
-    ].map(([value, text]) => element('option', { value, text })),
-  );
+  const others = createCompareChoice(compare, compared);
   const left = button('Tree', 'left', () => run('tree'), { 'aria-pressed': 'true' });
   const right = button('Script and tables', 'right', () => run('tables'), { 'aria-pressed': 'true' });
   const name = element('h1', { text: 'loft' });
@@ -44,7 +37,7 @@ export function createToolbar(holder, state, model, { run, shade, cut, compare, 
       section,
       measure,
     ),
-    ...(live ? [group('Compare', others)] : []),
+    ...(live ? [group('Compare', others.parts)] : []),
     element('span', { class: 'space' }),
     button('Light or dark', 'sun', () => run('theme')),
     button('Keys (?)', 'help', () => run('help')),
@@ -91,10 +84,7 @@ export function createToolbar(holder, state, model, { run, shade, cut, compare, 
     left.setAttribute('aria-pressed', String(now.left));
     right.setAttribute('aria-pressed', String(now.right));
     name.textContent = model.frame?.title ?? 'loft';
-    const withWhat = compared();
-    if (![...others.options].some((option) => option.value === withWhat))
-      others.append(element('option', { value: withWhat, text: withWhat }));
-    others.value = withWhat;
+    others.update();
     bar.hidden = !now.cut;
     if (now.cut) {
       axis.forEach((one, i) => one.setAttribute('aria-pressed', String('xyz'[i] === now.cut.axis)));
