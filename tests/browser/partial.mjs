@@ -2,9 +2,10 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { ready, state, until } from './browser.mjs';
+import { open, ready, state, until } from './browser.mjs';
 import { partial, plateNode, roof } from './fake_models.mjs';
-import { clickAt, middle, over, picture, tab } from './harness.mjs';
+import { startFake } from './fake_server.mjs';
+import { browser, clickAt, middle, over, picture, tab } from './harness.mjs';
 
 const camera = (page) => page.evaluate(() => window.loftView.camera());
 const text = (page, selector) => page.locator(selector).innerText();
@@ -74,6 +75,38 @@ test('the camera is fitted again while it still flies to the shapes', async () =
     },
     { reducedMotion: 'no-preference' },
   );
+});
+
+test('a key of the view that is pressed during the first evaluation is not undone', async () => {
+  const isTop = async (page) => assert.ok((await camera(page)).pitch > 1.5, JSON.stringify(await camera(page)));
+  await over(
+    partial(roof(1)),
+    async ({ page, fake }) => {
+      await page.locator('#picture').focus();
+      await page.keyboard.press('2');
+      fake.show(wider(roof(2)));
+      await ready(page, 2);
+      await page.waitForTimeout(500);
+      await isTop(page);
+      assert.ok((await camera(page)).height < 12);
+    },
+    { reducedMotion: 'no-preference' },
+  );
+  // Before anything is drawn.
+  const fake = await startFake(partial(roof(1)));
+  fake.delays.set(1, 1500);
+  const { page, complaints, close } = await open(browser, fake.address);
+  await page.locator('#picture').focus();
+  await page.keyboard.press('2');
+  await page.keyboard.press('o');
+  assert.equal((await state(page)).number, null);
+  await ready(page, 1);
+  await isTop(page);
+  const { flat, height } = await camera(page);
+  assert.ok(flat && height > 3 && height < 9, `${height}`);
+  assert.deepEqual(complaints, []);
+  await close();
+  await fake.close();
 });
 
 test('a camera that was moved, or that the address brings, is not fitted again', async () => {

@@ -55,7 +55,7 @@ export class Model {
    */
   fitFirst(frame) {
     const { view } = this.state.get();
-    const isOwn = this.fitted !== null && (view === this.fitted.view || Boolean(this.stage.flight));
+    const isOwn = this.fitted !== null && (view === this.fitted.view || this.stage.aim === this.fitted.view);
     if (frame.box && (!view || (isOwn && !isWithin(this.stage.box, this.fitted.box))))
       this.fitted = { view: this.stage.fit(), box: this.stage.box };
     if (!frame.partial) this.fitted = null;

@@ -21,6 +21,8 @@ export class Stage {
     this.scene.matrixAutoUpdate = false;
     this.camera = new Camera();
     this.origin = [0, 0, 0];
+    this.first = {}; // Direction of the first picture, where somebody chose one before there was a model.
+    this.aim = null; // The view that the camera flies to.
     this.box = null;
     this.frames = 0; // Pictures drawn since the page was opened.
     this.before = []; // Called before each picture: section plane, labels.
@@ -34,12 +36,14 @@ export class Stage {
   }
 
   get view() {
-    return this.state.get().view ?? START;
+    return this.state.get().view ?? { ...START, ...this.first };
   }
 
   setView(view) {
     this.stopFlight();
-    this.state.set({ view });
+    const { yaw, pitch, flat } = view;
+    if (this.box || this.state.get().view) this.state.set({ view });
+    else this.first = { yaw, pitch, flat };
     this.invalidate();
   }
 
@@ -71,7 +75,10 @@ export class Stage {
 
   /** Moves the camera so that a box is seen whole; gives the view that it moves to. */
   fit(box = this.box, direction = {}) {
-    if (!box) return null;
+    if (!box) {
+      Object.assign(this.first, direction);
+      return null;
+    }
     const view = fitted({ ...this.view, ...direction }, box, this.aspect);
     this.flyTo(view);
     return view;
@@ -85,6 +92,7 @@ export class Stage {
       return;
     }
     this.stopFlight();
+    this.aim = view;
     const began = performance.now();
     const turn = Math.atan2(Math.sin(view.yaw - from.yaw), Math.cos(view.yaw - from.yaw));
     const step = () => {
@@ -108,6 +116,7 @@ export class Stage {
   stopFlight() {
     if (this.flight) cancelAnimationFrame(this.flight);
     this.flight = 0;
+    this.aim = null;
   }
 
   invalidate() {
