@@ -118,6 +118,70 @@ test('sixty members of a list: a row each, rows that nothing changes stay', asyn
   });
 });
 
+test('five thousand members: one row, which opens some rows at a time', async (t) => {
+  const list = (name, count) => Array.from({ length: count }, (_, i) => `${name}[${i}]`);
+  const names = list('bay', 5000);
+  const at = (i) => [i % 100, Math.floor(i / 100), 0];
+  // Without the edges, which a browser that draws by software is slow with.
+  const [bays] = surface(
+    'bay',
+    names.map((_, i) => (u, v) => [at(i)[0] + 0.8 * u, at(i)[1] + 0.8 * v, 0]),
+    { names, cells: [1, 1] },
+  );
+  const dots = points(
+    list('dot', 60),
+    list('dot', 60).map((_, i) => [i, -3, 0]),
+  );
+  const ribs = curve('rib[7]', (t) => [99 * t, -2, 0]);
+  const facts = (count) => ({ facts: [['members', String(count)]] });
+  const things = [
+    thing('bay', 'surface', [bays], 7, facts(5000)),
+    thing('dot', 'point', [dots], 5, facts(60)),
+    thing('rib', 'curve', [ribs], 6, facts(1)),
+  ];
+  await over(frame(1, [bays, dots, ribs], things), async ({ page, fake }) => {
+    const members = page.locator('#tree .member:not(.more)');
+    assert.equal(await page.locator('#tree [role=treeitem]').count(), 6);
+    await page.locator('[data-key="bay"]').focus();
+    await page.keyboard.press('ArrowRight');
+    assert.equal(await members.count(), 200);
+    assert.equal(await page.locator('[data-key="bay"]').getAttribute('aria-expanded'), 'true');
+    await page.locator('[data-key="member bay[150]"]').click();
+    const [hit] = (await state(page)).picks;
+    assert.deepEqual([hit.thing, hit.kind, hit.item], ['bay', 'face', 150]);
+    at(150).forEach((low, k) => assert.ok(hit.point[k] >= low - 1e-5 && hit.point[k] <= low + 0.8, `${hit.point}`));
+    assert.equal(await page.locator('[data-key="member bay[150]"]').getAttribute('aria-selected'), 'true');
+    await page.getByText('200 more of 4800').click();
+    assert.equal(await members.count(), 400);
+    // What nothing changes stays, and a frame leaves open what is open.
+    await page.evaluate(() => (document.querySelector('[data-key="member bay[399]"]').dataset.same = 'yes'));
+    const next = frame(2, [bays, dots, ribs], things);
+    fake.show(next);
+    await ready(page, 2);
+    assert.equal(await page.locator('[data-key="member bay[399]"]').getAttribute('data-same'), 'yes');
+    await page.locator('[data-key="dot"] .turn').click();
+    await page.locator('[data-key="member dot[59]"]').click();
+    assert.deepEqual((await state(page)).picks[0].point, [59, -3, 0]);
+    await page.locator('[data-key="rib"] .turn').click();
+    await page.locator('[data-key="member rib[7]"]').click();
+    assert.equal((await state(page)).picks[0].kind, 'edge');
+    const ms = await page.evaluate(() => {
+      const field = document.getElementById('search');
+      const began = performance.now();
+      field.value = 'bay[499';
+      field.dispatchEvent(new Event('input'));
+      return performance.now() - began;
+    });
+    assert.deepEqual(await members.allInnerTexts(), ['bay[499]', ...list('bay', 5000).slice(4990)]);
+    t.diagnostic(`a search among 5000 members: ${ms.toFixed(1)} ms`);
+    assert.ok(ms < 300, `${ms}`);
+    await page.fill('#search', '');
+    await page.locator('[data-key="bay"]').focus();
+    await page.keyboard.press('ArrowLeft');
+    assert.equal(await page.locator('[data-key^="member bay"]').count(), 0);
+  });
+});
+
 test('lines of the script that are the same stay; numbers, marks and clicks are those of the new text', async () => {
   await over(roof(1), async ({ page, fake }) => {
     await page.evaluate(() => (document.querySelector('.line[data-line="7"]').dataset.same = 'yes'));

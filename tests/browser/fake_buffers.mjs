@@ -81,7 +81,7 @@ function patch(at, n, m) {
 }
 
 /** Several patches as one surface: its faces and its edges. `counts` says how many faces meet at each edge. */
-export function surface(name, patches, { origin = [0, 0, 0], cells = [16, 16], closed = false } = {}) {
+export function surface(name, patches, { origin = [0, 0, 0], cells = [16, 16], closed = false, names = null } = {}) {
   const all = { positions: [], normals: [], triangles: [], curvature: [], face: [] };
   const lines = { positions: [], starts: [0], edges: [], faces: [] };
   patches.forEach((at, f) => {
@@ -108,7 +108,7 @@ export function surface(name, patches, { origin = [0, 0, 0], cells = [16, 16], c
   });
   const box = boxOf(all.positions, origin);
   const faces = patches.map((_, f) => ({
-    name: `${name}.patches[${f}]`,
+    name: names?.[f] ?? `${name}.patches[${f}]`,
     area: 1.25,
     neighbours: [f - 1, f + 1].filter((n) => n >= 0 && n < patches.length),
   }));

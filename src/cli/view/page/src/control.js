@@ -124,6 +124,7 @@ export function createControl(app, byId) {
     tell,
     settle,
     zoom,
+    zoomPoints,
     toggle,
     isolate,
     toggleAll(things, to) {

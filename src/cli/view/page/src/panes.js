@@ -92,6 +92,10 @@ export function createPanes(app, byId) {
       selection.over = name;
       selection.mark();
     },
+    pick: (pick) => selection.take(pick),
+    zoomTo: (pick) => control.zoomPoints([pick.point]),
+    isPicked: (drawing, item) => selection.picks.some((pick) => pick.drawing === drawing && pick.item === item),
+    pickedOf: (name) => selection.picks.filter(({ drawing }) => drawing.name === name).map(({ item }) => item),
     isChosen: (name) => selection.thing === name,
     isLit: (name) => selection.lit.has(name),
   });

@@ -41,6 +41,10 @@ export class Selection {
       return;
     }
     const second = (again || this.measuring) && this.picks.length === 1;
+    this.take(hit, second);
+  }
+
+  take(hit, second = false) {
     this.picks = second ? [this.picks[0], hit] : [hit];
     this.choose(hit.drawing.name, { keepPicks: true, tab: second ? 'selected' : undefined });
   }

@@ -12,7 +12,7 @@ const FRESH = {
   closed: {}, // Sections of the tree that are closed.
   left: true,
   right: true,
-  open: [], // Things of the tree whose facts are shown.
+  open: [], // Things of the tree whose members are shown.
 };
 
 /** The state with `get`, `set` and `subscribe`; each change goes into the address after a moment. */
@@ -77,6 +77,6 @@ export function fromAddress(hash) {
     }
   }
   if (state.cut && !(['x', 'y', 'z'].includes(state.cut.axis) && Number.isFinite(state.cut.share))) delete state.cut;
-  if (state.only && !Array.isArray(state.only)) delete state.only;
+  for (const name of ['only', 'open']) if (state[name] && !Array.isArray(state[name])) delete state[name];
   return state;
 }

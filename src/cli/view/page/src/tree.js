@@ -3,6 +3,7 @@
 import { button, element, icon } from './dom.js';
 import { isAwaited } from './model.js';
 import { theme } from './theme.js';
+import { createMemberRows } from './tree_members.js';
 
 const SECTIONS = [
   ['surface', 'Surfaces'],
@@ -17,6 +18,7 @@ const SECTIONS = [
 /** `on` has `toggle(thing, shown)`, `color(thing, text)`, `isolate(name)`, `choose(thing)`, `goTo(place)`, `zoom(names)`, `hover(name)`. */
 export function createTree(holder, search, model, state, on) {
   let drawn = ''; // What the tree shows, as text.
+  const members = createMemberRows(model, state, row, draw, on);
   search.addEventListener('input', draw);
 
   function draw() {
@@ -28,9 +30,13 @@ export function createTree(holder, search, model, state, on) {
     const focused = document.activeElement?.closest?.('[role=treeitem]')?.dataset.key;
     const wanted = search.value.trim().toLowerCase();
     const fits = (text) => !wanted || text.toLowerCase().includes(wanted);
-    const sections = SECTIONS.map(([kind, title]) =>
-      section(kind, title, frame.things.filter((thing) => thing.kind === kind && fits(thing.name)).map(thingItem)),
-    );
+    const sections = SECTIONS.map(([kind, title]) => {
+      const things = frame.things.filter(
+        (thing) => thing.kind === kind && (fits(thing.name) || (members.has(thing) && members.some(thing, fits))),
+      );
+      const rows = (thing) => [thingItem(thing), ...members.rows(thing, fits, wanted !== '')];
+      return section(kind, title, things.flatMap(rows), things.length);
+    });
     sections.push(section('checks', 'Checks', frame.checks.filter((check) => fits(check.name || check.text)).map(checkItem)));
     sections.push(
       section(
@@ -66,13 +72,15 @@ export function createTree(holder, search, model, state, on) {
     const { colors, only, closed } = state.get();
     const things = frame.things.map((thing) => {
       const { name, kind, of, color, unmade, stale } = thing;
-      return [name, kind, of, color, unmade, stale, isAwaited(thing), model.isShown(thing), on.isChosen(name), on.isLit(name)];
+      const drawn = members.has(thing) && [thing.buffers, on.pickedOf(name)];
+      return [name, kind, of, color, unmade, stale, isAwaited(thing), model.isShown(thing), on.isChosen(name), on.isLit(name), drawn];
     });
     const named = reports.map(({ name, title }) => [name, title]);
-    return JSON.stringify([things, checks, named, pictures, outputs, Boolean(partial), colors, only, closed, search.value, theme.dark]);
+    const shown = [colors, only, closed, members.content(), search.value, theme.dark];
+    return JSON.stringify([things, checks, named, pictures, outputs, Boolean(partial), shown]);
   }
 
-  function section(key, title, items) {
+  function section(key, title, items, count = items.length) {
     if (!items.length) return null;
     const open = !state.get().closed[key] || search.value !== '';
     const flip = () => {
@@ -84,7 +92,7 @@ export function createTree(holder, search, model, state, on) {
       { class: 'section', 'aria-expanded': String(open), 'aria-level': '1', onclick: flip, flip, open },
       element('span', { class: open ? 'turn open' : 'turn' }, icon('open')),
       element('span', { class: 'name', text: title }),
-      element('span', { class: 'count', text: String(items.length) }),
+      element('span', { class: 'count', text: String(count) }),
     );
     const isResult = key === 'checks' || key === 'reports' || key === 'pictures';
     if (!isResult) {
@@ -176,7 +184,13 @@ export function createTree(holder, search, model, state, on) {
         space: toggle,
         enter: () => on.choose(thing),
         isolate: () => on.isolate(thing.name),
+        ...(members.has(thing) && {
+          'aria-expanded': String(members.isOpen(thing)),
+          open: members.isOpen(thing),
+          flip: () => members.flip(thing),
+        }),
       },
+      members.has(thing) && members.sign(thing),
       thing.kind === 'group'
         ? element('span', { class: 'dot report', 'aria-hidden': 'true' })
         : element('input', {
