@@ -28,6 +28,9 @@ test('while the other state is evaluated the page says so, and the model can be 
     fake.send('work', { number: 3, phase: 'curves', done: 3, of: 25, seconds: 1.2 });
     await page.getByText('Comparing: curves 3 of 25 · 1.2 s').waitFor();
     await picture(page, 'page-comparing');
+    await page.selectOption('#shade', 'moved');
+    await page.getByText('The other state is being evaluated.').waitFor();
+    await page.selectOption('#shade', 'plain');
     // The model of today stays, moves, and may come again before the other one is there.
     const before = (await state(page)).pictures;
     const box = await canvasBox(page);

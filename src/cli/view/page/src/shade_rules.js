@@ -189,8 +189,8 @@ export const RULES = {
 
   async moved(legend, shade, current) {
     const { compare } = this.model.frame;
-    if (!compare) {
-      legend.note = 'Choose a state to compare with first.';
+    if (!compare || compare.pending || compare.failed) {
+      legend.note = compare?.pending ? 'The other state is being evaluated.' : 'Choose a state to compare with first.';
       return;
     }
     legend.note = 'Measuring…';
