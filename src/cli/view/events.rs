@@ -1,7 +1,7 @@
 //! What the open pages are told: server-sent events, the newest of each kind.
 //!
 //! A page needs the state, not its history. So an event that could not be sent yet gives way to a newer one of its kind, and a page that
-//! takes nothing holds one event of each kind here, until it is dropped. Numbers of frames only go up. A small frame is told in its event,
+//! takes nothing holds one event of each kind here, until it is dropped. Numbers of frames only go up. A small frame stands in its event,
 //! so that the page need not ask for it.
 
 use std::io::{self, Read, Write};
@@ -203,8 +203,8 @@ impl Tab {
             event.extend_from_slice(b"}\n\n");
             return Some(event);
         }
-        let told = |name: &str, data: String| format!("event: {name}\ndata: {data}\n\n").into_bytes();
-        KINDS.iter().zip(&mut self.waiting).find_map(|((_, name), data)| data.take().map(|data| told(name, data)))
+        let event = |name: &str, data: String| format!("event: {name}\ndata: {data}\n\n").into_bytes();
+        KINDS.iter().zip(&mut self.waiting).find_map(|((_, name), data)| data.take().map(|data| event(name, data)))
     }
 
     /// The other side ended the stream.

@@ -19,7 +19,7 @@ const MOST: usize = 64;
 /// Bytes that frames within the grace may hold beside the newest ones.
 const MOST_BYTES: usize = 256 << 20;
 
-/// Bytes of a frame that is told in the event itself.
+/// Bytes of a frame that stands in its event.
 const SMALL: usize = 64 * 1024;
 
 /// The newest frames.
@@ -88,9 +88,9 @@ impl Frames {
         Some(newest.json.clone())
     }
 
-    /// The number of the newest frame, and its JSON where it is small enough to be told in an event: on one line, as events are. A page
-    /// that is told it goes on to its buffers.
-    pub fn newest_told(&self) -> (u64, Option<Arc<Packed>>) {
+    /// The number of the newest frame, and its JSON where it is small enough for an event: on one line, as events are. A page
+    /// that has it goes on to its buffers.
+    pub fn newest_if_small(&self) -> (u64, Option<Arc<Packed>>) {
         let mut state = self.state();
         let Some(newest) = state.frames.back_mut() else { return (0, None) };
         let plain = newest.json.plain();

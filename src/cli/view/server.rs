@@ -165,7 +165,7 @@ impl Shared {
     /// Keeps a frame and tells the pages, unless there is a newer one.
     fn show(&self, number: u64, frame: Frame) {
         if self.frames.publish(number, frame) {
-            let (newest, json) = self.frames.newest_told();
+            let (newest, json) = self.frames.newest_if_small();
             self.events.frame(newest, json);
         }
     }
