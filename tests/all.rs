@@ -54,6 +54,7 @@ mod order;
 mod properties;
 mod quads;
 mod quadtree;
+mod random_maps;
 mod random_nets;
 mod random_plates;
 mod random_quads;

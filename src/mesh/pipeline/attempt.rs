@@ -83,8 +83,8 @@ enum Retry {
     BrokenSteps(Vec<(usize, u32)>),
     /// A face breaks a limit: its rows demand more steps.
     BrokenLimits,
-    /// Uneven rows of faces do not end opposite to where they begin: these become even.
-    LeaningRows(Vec<usize>),
+    /// Uneven rows of faces lean, or limits demand many more of them: these become even.
+    UnfitRows(Vec<usize>),
     /// Faces have elements or edges between the same nodes.
     Coincident(Demand),
     /// Elements of a face from one of its sides to another are the same ones: the steps of its border are halved.
@@ -282,9 +282,9 @@ impl Attempt<'_> {
         if !broken.is_empty() {
             return Ok(Some(Retry::BrokenSteps(broken)));
         }
-        let leaning = row_spacing::leaning(self.layout, nodes, &self.sizing.rows);
-        if !leaning.is_empty() {
-            return Ok(Some(Retry::LeaningRows(leaning)));
+        let unfit = row_spacing::unfit(self.layout, nodes, &self.sizing.rows, &self.relations.of_face, counts);
+        if !unfit.is_empty() {
+            return Ok(Some(Retry::UnfitRows(unfit)));
         }
         let uneven = uneven::find(self.layout, nodes, self.input.tolerance.point, &self.sizing);
         Ok((!uneven.is_empty()).then_some(Retry::UnevenBorders(uneven)))
@@ -339,7 +339,7 @@ impl Attempt<'_> {
                 }
             }
             Retry::BetterMapped(faces) => faces.into_iter().for_each(|f| self.layout.faces[f].keep_map()),
-            Retry::LeaningRows(faces) => faces.into_iter().for_each(|f| self.layout.faces[f].even_rows = true),
+            Retry::UnfitRows(faces) => faces.into_iter().for_each(|f| self.layout.faces[f].even_rows = true),
             Retry::ClosesOnItself(f) => self.layout.faces[f].halved += 1,
         }
         (self.sizing, self.demands, self.relations) = begin(self.input, self.layout, self.size, self.cache, self.job)?;
@@ -379,7 +379,7 @@ fn demands(input: &Input, layout: &Layout, sizing: &Sizing, limits: &Limits, cac
         let key = |cache: &CacheView| cache.on("demands", face.surface).with(&(patch.u, patch.v, (face.size.0, limits))).finish();
         let surface = &input.model.surfaces[face.surface.index()].surface;
         let even = recalled(cache, |reuse| &reuse.demands, key, || row_demand::demands(surface, patch.u, patch.v, face.size.0, limits));
-        [0, 1].map(|k| sizing.rows[f][k].map_or(even[k], |rows| even[k].of_uneven(rows)))
+        [0, 1].map(|k| sizing.rows[f][k].map_or(even[k], |rows| even[k].of_uneven(rows.uneven)))
     })
 }
 

@@ -1,20 +1,20 @@
 //! Rows of maps that are as uneven as the bends of their faces: where even ones would have to be as narrow everywhere as the sharpest bend
 //! demands, as round a profile with small roundings.
 //!
-//! All sides that rows of one face, of the next one, and so on run across are divided by one law: shares of their length.
+//! Rows run on over all faces that share segments. Opposite sides are divided into segments at the same shares, so that each segment has one
+//! opposite to it; all that are opposite to each other, face by face, are divided by one law, and no row leans.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-use crate::base::{job, par};
+use crate::base::{job, par, work};
 use crate::mesh::border::layout::{Face, FaceSide, Layout};
 use crate::mesh::border::nodes::{Nodes, line};
 use crate::mesh::request::input::Input;
 use crate::mesh::size::border_spacing::{BorderSpacing, SIZE_ROOM, SPACING_SETTINGS};
 use crate::mesh::size::least_counts::MAX_COUNT;
-use crate::mesh::size::row_profile::RowDirection;
+use crate::mesh::size::opposite_segments::{Opposite, OppositeSegments};
+use crate::mesh::size::row_bends::RowDirection;
 use crate::mesh::size::spacing_solver::SpacingInput;
-use crate::model::glue::root;
-use crate::model::segments::SegmentUse;
 use crate::surface::Evaluator;
 
 /// When rows are uneven.
@@ -27,21 +27,34 @@ struct RowSettings {
     max_misfit: f64,
     /// Largest difference of the shares at which a row meets both sides, over its steps there.
     max_lean: f64,
+    /// Rounds in which steps grow from segment to segment along sides.
+    growth_rounds: usize,
 }
 
-const SETTINGS: RowSettings = RowSettings { min_gain: 2.0, min_saved: 8.0, max_misfit: 1e-6, max_lean: 0.5 };
+const SETTINGS: RowSettings = RowSettings { min_gain: 2.0, min_saved: 8.0, max_misfit: 1e-6, max_lean: 0.5, growth_rounds: 4 };
 
-/// Number of rows of each face along u and along v where they are uneven.
-pub type UnevenRows = Vec<[Option<u32>; 2]>;
+/// Numbers of rows of a face along a direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RowCounts {
+    /// As they are, uneven.
+    pub uneven: u32,
+    /// Even ones, as far as is known.
+    pub even: f64,
+}
 
-/// Rows of one direction of a face.
+/// Numbers of rows of each face along u and along v where they are uneven.
+pub type UnevenRows = Vec<[Option<RowCounts>; 2]>;
+
+/// A direction of a mapped face with four sides.
 struct Rows {
     face: usize,
     direction: usize,
+}
+
+/// What bends demand of rows.
+struct RowDemands {
     /// Steps as shares of a side.
     spacing: BorderSpacing,
-    /// The longest step that the size allows, such a share.
-    most: f64,
     /// Number of even rows.
     even: f64,
 }
@@ -52,41 +65,48 @@ pub(super) fn lower_to_rows(input: &Input, layout: &Layout, given: &SpacingInput
     if given.limits.chord.is_none() && given.limits.angle.is_none() {
         return uneven;
     }
-    let found = par::map(layout.faces.len(), |f| rows_of_face(input, layout, given, f));
-    let all: Vec<Rows> = found.into_iter().flatten().collect();
-    for mut strip in strips(layout, given, all) {
-        if strip.iter().any(|rows| stays_even(layout, given, rows)) {
+    let opposite = OppositeSegments::new(layout, SETTINGS.max_misfit);
+    for strip in strips(layout, given, &opposite) {
+        job::poll();
+        let demands = par::map(strip.len(), |k| demands(input, layout, given, &strip[k]));
+        let least = |rows: &Rows, demands: &RowDemands| {
+            sides(&layout.faces[rows.face], rows.direction).map(|side| side.length).fold(f64::INFINITY, f64::min) / demands.even
+        };
+        // That even rows would be below a written floor is an error that tells what needs them.
+        if strip.iter().zip(&demands).any(|(rows, demands)| least(rows, demands) < given.wanted.written) {
             continue;
         }
-        let even = strip.iter().map(|rows| rows.even).fold(0.0, f64::max);
-        let segments = strip.iter().flat_map(|rows| sides(&layout.faces[rows.face], rows.direction).flat_map(FaceSide::segments));
-        let known = segments.filter(|k| spacings[*k].least() < given.size[*k]).map(|k| (k, spacings[k].clone())).collect();
-        let agreed = agreed(layout, &mut strip, known);
-        let count = |rows: &Rows| rows.spacing.demand(1.0, rows.most, MAX_COUNT);
-        let most = strip.iter().map(|rows| f64::from(count(rows))).fold(0.0, f64::max);
+        let known = Laws::known(layout, given, &opposite, &strip, spacings);
+        let mut laws = known.clone();
+        strip.iter().zip(&demands).for_each(|(rows, demands)| laws.lower_to(layout, &opposite, rows, &demands.spacing));
+        laws.grow(layout, &opposite, &strip, input.plan.slope());
+        let counts: Vec<u32> = strip.iter().map(|rows| laws.count(layout, &opposite, rows)).collect();
+        let by_known = strip.iter().map(|rows| f64::from(known.count(layout, &opposite, rows)));
+        let even = demands.iter().map(|demands| demands.even).chain(by_known).fold(0.0, f64::max);
+        let most = f64::from(counts.iter().copied().max().unwrap_or(0));
         if even < SETTINGS.min_gain * most || even < most + SETTINGS.min_saved {
             continue;
         }
-        agreed.into_iter().for_each(|(segment, spacing)| spacings[segment] = spacings[segment].lower(&spacing));
-        strip.iter().for_each(|rows| uneven[rows.face][rows.direction] = Some(count(rows)));
+        for rows in &strip {
+            for part in sides(&layout.faces[rows.face], rows.direction).flat_map(|side| &side.uses) {
+                spacings[part.segment] = laws.of_segment(layout, &opposite, part.segment);
+            }
+        }
+        strip.iter().zip(counts).for_each(|(rows, count)| uneven[rows.face][rows.direction] = Some(RowCounts { uneven: count, even }));
     }
     uneven
 }
 
-/// Whether both sides along a direction are divided into segments at the same shares of their lengths.
-fn is_aligned(face: &Face, direction: usize) -> bool {
-    let [a, b] = [&face.sides[direction], &face.sides[direction + 2]];
-    let end = |side: &FaceSide, k: usize| side.uses[k].s.1 / side.length;
-    a.uses.is_empty()
-        || b.uses.is_empty()
-        || a.uses.len() == b.uses.len() && (0..a.uses.len()).all(|k| (end(a, k) - end(b, k)).abs() <= SETTINGS.max_misfit)
-}
-
-/// Faces with uneven rows that lean: beyond half of a step.
-pub fn leaning(layout: &Layout, nodes: &Nodes, rows: &UnevenRows) -> Vec<usize> {
-    let leans = |f: usize, direction: usize| {
+/// Faces whose uneven rows have to be even: those that lean beyond half of a step, or whose limits turned out to demand more rows than
+/// even ones would be. `rows_of_face` are the rows of each face, as in [`crate::mesh::divide::relations::Relations::of_face`].
+pub fn unfit(layout: &Layout, nodes: &Nodes, rows: &UnevenRows, rows_of_face: &[Vec<usize>], counts: &[u32]) -> Vec<usize> {
+    let is_unfit = |f: usize, direction: usize| {
         let face = &layout.faces[f];
-        if rows[f][direction].is_none() || face.sides[direction].uses.is_empty() || face.sides[direction + 2].uses.is_empty() {
+        let Some(own) = rows[f][direction] else { return false };
+        if f64::from(counts[rows_of_face[f][direction]]) > own.even.max(f64::from(own.uneven)) {
+            return true;
+        }
+        if face.sides[direction].uses.is_empty() || face.sides[direction + 2].uses.is_empty() {
             return false;
         }
         let shares = |k: usize| {
@@ -97,148 +117,144 @@ pub fn leaning(layout: &Layout, nodes: &Nodes, rows: &UnevenRows) -> Vec<usize> 
         let apart = |k: usize| (a[k] - b[k]).abs() > SETTINGS.max_lean * (a[k] - a[k - 1]).min(a[k + 1] - a[k]);
         a.len() != b.len() || (1..a.len() - 1).any(apart)
     };
-    (0..layout.faces.len()).filter(|f| leans(*f, 0) || leans(*f, 1)).collect()
+    (0..layout.faces.len()).filter(|f| is_unfit(*f, 0) || is_unfit(*f, 1)).collect()
 }
 
-/// Whether uneven rows would lean, or have steps below a written floor: that even ones have them is told with what needs them.
-fn stays_even(layout: &Layout, given: &SpacingInput, rows: &Rows) -> bool {
-    let face = &layout.faces[rows.face];
-    let shortest = sides(face, rows.direction).map(|side| side.length).fold(f64::INFINITY, f64::min) / rows.even;
-    face.even_rows || !is_aligned(face, rows.direction) || shortest < given.wanted.written
-}
-
-/// Both sides along a direction.
+/// Both sides along a direction that are no poles.
 fn sides(face: &Face, direction: usize) -> impl Iterator<Item = &FaceSide> {
     [direction, direction + 2].into_iter().map(|k| &face.sides[k]).filter(|side| !side.uses.is_empty())
 }
 
-/// Rows along u and along v of a mapped face with four sides.
-fn rows_of_face(input: &Input, layout: &Layout, given: &SpacingInput, f: usize) -> Vec<Rows> {
-    let face = &layout.faces[f];
-    if face.free || face.is_triangle() {
-        return Vec::new();
-    }
-    let surface = &input.model.surfaces[face.surface.index()].surface;
-    let form = surface.power_form();
-    let evaluator = Evaluator::new(surface, form.as_ref());
-    let one = |direction: usize| {
-        let profile = RowDirection::new(input, evaluator, given.limits, face, direction)?.profile();
-        let side = sides(face, direction).map(|side| side.length).fold(0.0, f64::max);
-        let most = (face.size.0 / side).min(SIZE_ROOM * face.size.0 / profile.longest());
-        let is_ring = {
-            let [from, to] = if direction == 0 { [3, 1] } else { [0, 2] }.map(|k| face.sides[k].segments());
-            from.iter().any(|segment| to.contains(segment))
-        };
-        let longest = profile.longest_steps(most);
-        let even = 1.0 / longest.iter().copied().fold(most, f64::min);
-        Some(Rows { face: f, direction, spacing: profile.spacing(&longest, input.plan.slope(), is_ring), most, even })
-    };
-    [0, 1].into_iter().filter_map(one).collect()
-}
-
-/// Rows that share segments, strip by strip. Those that run across a segment whose steps are written, or across a triangle of a map, are
-/// even.
-fn strips(layout: &Layout, given: &SpacingInput, all: Vec<Rows>) -> Vec<Vec<Rows>> {
-    let mut parent: Vec<usize> = (0..layout.pieces.segments.len()).collect();
-    let segments = |rows: &Rows| sides(&layout.faces[rows.face], rows.direction).flat_map(FaceSide::segments).collect::<Vec<usize>>();
-    for rows in &all {
-        let own = segments(rows);
-        for other in &own[1..] {
-            let (a, b) = (root(&mut parent, own[0]), root(&mut parent, *other));
-            parent[a.max(b)] = a.min(b);
-        }
-    }
+/// Rows that run on from face to face, strip by strip. Those that run across a segment whose steps are written, across a triangle of a map,
+/// or between sides that are not divided alike are even and left out.
+fn strips(layout: &Layout, given: &SpacingInput, opposite: &OppositeSegments) -> Vec<Vec<Rows>> {
+    let mut even = BTreeSet::new();
     let triangles = layout.faces.iter().filter(|face| !face.free && face.is_triangle()).flat_map(Face::segments);
-    let written = (0..parent.len()).filter(|k| given.written[*k].is_some());
-    let even: Vec<usize> = triangles.chain(written).collect();
-    let even: Vec<usize> = even.into_iter().map(|k| root(&mut parent, k)).collect();
+    let written = (0..given.written.len()).filter(|k| given.written[*k].is_some());
+    triangles.chain(written).for_each(|k| {
+        even.insert(opposite.strip(k));
+    });
     let mut strips: BTreeMap<usize, Vec<Rows>> = BTreeMap::new();
-    for rows in all {
-        let strip = root(&mut parent, segments(&rows)[0]);
-        if !even.contains(&strip) {
-            strips.entry(strip).or_default().push(rows);
+    for (f, face) in layout.faces.iter().enumerate().filter(|(_, face)| !face.free && !face.is_triangle()) {
+        for direction in [0, 1] {
+            let Some(segment) = sides(face, direction).flat_map(FaceSide::segments).next() else { continue };
+            let strip = opposite.strip(segment);
+            if face.even_rows || !opposite.is_aligned(f, direction) {
+                even.insert(strip);
+            }
+            strips.entry(strip).or_default().push(Rows { face: f, direction });
         }
     }
-    strips.into_values().collect()
+    strips.into_iter().filter(|(strip, _)| !even.contains(strip)).map(|(_, rows)| rows).collect()
 }
 
-/// Carries the steps of each face of a strip, and those known of its segments, on to the others until all agree; gives those of the segments,
-/// model units.
-fn agreed(layout: &Layout, strip: &mut [Rows], known: BTreeMap<usize, BorderSpacing>) -> BTreeMap<usize, BorderSpacing> {
-    let mut found = known;
-    for _ in 0..SPACING_SETTINGS.max_rounds {
-        let mut changed = false;
-        for rows in &mut *strip {
-            job::poll();
-            for side in sides(&layout.faces[rows.face], rows.direction) {
-                let on_side = on_side(&rows.spacing, side, &found);
-                if is_lower(&on_side, &rows.spacing) {
-                    rows.spacing = rows.spacing.lower(&on_side);
-                }
-            }
-            for side in sides(&layout.faces[rows.face], rows.direction) {
-                for part in &side.uses {
-                    let own = along(&rows.spacing, side, part);
-                    let now = found.entry(part.segment).or_insert_with(|| own.clone());
-                    if is_lower(&own, now) {
-                        *now = now.lower(&own);
-                        changed = true;
+/// What the bends of a face demand of its rows along a direction.
+fn demands(input: &Input, layout: &Layout, given: &SpacingInput, rows: &Rows) -> RowDemands {
+    let face = &layout.faces[rows.face];
+    let side = sides(face, rows.direction).map(|side| side.length).fold(0.0, f64::max);
+    let by_size = (face.size.0 / side).min(1.0);
+    let surface = &input.model.surfaces[face.surface.index()].surface;
+    let Some(found) = RowDirection::new(input, Evaluator::new(surface, None), given.limits, face, rows.direction) else {
+        return RowDemands { spacing: BorderSpacing::even(by_size), even: 1.0 / by_size };
+    };
+    let profile = found.profile();
+    let most = by_size.min(SIZE_ROOM * face.size.0 / profile.longest);
+    let [from, to] = if rows.direction == 0 { [3, 1] } else { [0, 2] }.map(|k| face.sides[k].segments());
+    let is_ring = from.iter().any(|segment| to.contains(segment));
+    let longest = profile.longest_steps(most);
+    let even = 1.0 / longest.iter().copied().fold(most, f64::min);
+    RowDemands { spacing: profile.spacing(&longest, input.plan.slope(), is_ring), even }
+}
+
+/// Steps of the segments of a strip as shares of their lengths: one law for all that are opposite to each other, along the first of them.
+#[derive(Clone)]
+struct Laws(BTreeMap<usize, BorderSpacing>);
+
+impl Laws {
+    /// By the sizes of the segments, and by what else is known to shorten their steps.
+    fn known(layout: &Layout, given: &SpacingInput, opposite: &OppositeSegments, strip: &[Rows], spacings: &[BorderSpacing]) -> Self {
+        let mut laws = Self(BTreeMap::new());
+        let of_face = |rows: &Rows| sides(&layout.faces[rows.face], rows.direction).flat_map(FaceSide::segments).collect::<Vec<usize>>();
+        for segment in strip.iter().flat_map(of_face) {
+            let share = 1.0 / layout.length(segment);
+            let mut own = spacings[segment].clone();
+            own.lengths.iter_mut().for_each(|length| *length = length.min(given.size[segment]) * share);
+            laws.lower(opposite.of(segment), own);
+        }
+        laws
+    }
+
+    /// Lowers the law of a segment to steps along it.
+    fn lower(&mut self, Opposite { first, is_reversed }: Opposite, steps: BorderSpacing) {
+        let steps = if is_reversed { reversed(&steps) } else { steps };
+        let Some(law) = self.0.get_mut(&first) else {
+            self.0.insert(first, steps);
+            return;
+        };
+        work::spend((steps.at.len() + law.at.len()) as u64);
+        let is_lower = |f: f64| steps.length_at(f) < SPACING_SETTINGS.min_change * law.length_at(f);
+        if steps.at.iter().chain(&law.at).any(|f| is_lower(*f)) {
+            *law = law.lower(&steps);
+        }
+    }
+
+    /// Lowers the laws to the steps of the rows of a face, shares of a side.
+    fn lower_to(&mut self, layout: &Layout, opposite: &OppositeSegments, rows: &Rows, steps: &BorderSpacing) {
+        let Some(side) = sides(&layout.faces[rows.face], rows.direction).next() else { return };
+        for part in &side.uses {
+            let (from, to) = (part.s.0 / side.length, part.s.1 / side.length);
+            let inner = steps.at.iter().copied().filter(|at| *at > from && *at < to);
+            let places: Vec<f64> = std::iter::once(from).chain(inner).chain([to]).collect();
+            let lengths = places.iter().map(|at| steps.length_at(*at) / (to - from)).collect();
+            let at = places.iter().map(|at| if *at == to { 1.0 } else { (at - from) / (to - from) }).collect();
+            let own = BorderSpacing { at, lengths, why: Vec::new() };
+            self.lower(opposite.of(part.segment), if part.against { reversed(&own) } else { own });
+        }
+    }
+
+    /// Steps grow by no more than `slope` from each segment of a side to the next.
+    fn grow(&mut self, layout: &Layout, opposite: &OppositeSegments, strip: &[Rows], slope: f64) {
+        for _ in 0..SETTINGS.growth_rounds {
+            for side in strip.iter().flat_map(|rows| sides(&layout.faces[rows.face], rows.direction)) {
+                let pairs = side.uses.windows(2);
+                for [a, b] in pairs.clone().map(|w| [&w[0], &w[1]]).chain(pairs.rev().map(|w| [&w[1], &w[0]])) {
+                    // Where both meet, seen along each segment: `b` begins there if it follows `a`.
+                    let follows = a.s.1 <= b.s.0;
+                    let [end, start] = [(a, follows), (b, !follows)].map(|(part, last)| if last != part.against { 1.0 } else { 0.0 });
+                    let length = self.of_segment(layout, opposite, a.segment).length_at(end);
+                    let own = self.of_segment(layout, opposite, b.segment);
+                    if length < SPACING_SETTINGS.min_change * own.length_at(start) {
+                        let share = 1.0 / layout.length(b.segment);
+                        let grown = BorderSpacing::about(&[(start, length * share)], own.most() * share, slope);
+                        self.lower(opposite.of(b.segment), grown);
                     }
                 }
             }
         }
-        if !changed {
-            break;
-        }
     }
-    found
+
+    /// Steps along a segment, model units.
+    fn of_segment(&self, layout: &Layout, opposite: &OppositeSegments, segment: usize) -> BorderSpacing {
+        let Opposite { first, is_reversed } = opposite.of(segment);
+        let Some(law) = self.0.get(&first) else { return BorderSpacing::even(layout.length(segment)) };
+        let mut own = if is_reversed { reversed(law) } else { law.clone() };
+        own.lengths.iter_mut().for_each(|length| *length *= layout.length(segment));
+        own
+    }
+
+    /// Number of rows of a face.
+    fn count(&self, layout: &Layout, opposite: &OppositeSegments, rows: &Rows) -> u32 {
+        let Some(side) = sides(&layout.faces[rows.face], rows.direction).next() else { return 1 };
+        let steps = |segment: usize| self.0.get(&opposite.of(segment).first).map_or(1, |law| law.demand(1.0, 1.0, MAX_COUNT));
+        side.uses.iter().map(|part| steps(part.segment)).fold(0, u32::saturating_add)
+    }
 }
 
-/// Whether a spacing is clearly lower than another one somewhere.
-fn is_lower(own: &BorderSpacing, other: &BorderSpacing) -> bool {
-    own.at.iter().zip(&own.lengths).any(|(at, length)| *length < SPACING_SETTINGS.min_change * other.length_at(*at))
-}
-
-/// Steps of the rows of a face along one of its segments, model units.
-fn along(rows: &BorderSpacing, side: &FaceSide, part: &SegmentUse) -> BorderSpacing {
-    let (from, to) = (part.s.0 / side.length, part.s.1 / side.length);
-    let inner = rows.at.iter().copied().filter(|at| *at > from && *at < to);
-    let places: Vec<f64> = std::iter::once(from).chain(inner).chain([to]).collect();
-    let share = |at: f64| if at == to { 1.0 } else { (at - from) / (to - from) };
-    let mut at: Vec<f64> = places.iter().map(|at| share(*at)).collect();
-    let mut lengths: Vec<f64> = places.iter().map(|at| rows.length_at(*at) * side.length).collect();
-    if part.against {
-        at = at.iter().rev().map(|at| 1.0 - at).collect();
-        lengths.reverse();
+/// Steps along a segment from its other end.
+fn reversed(steps: &BorderSpacing) -> BorderSpacing {
+    BorderSpacing {
+        at: steps.at.iter().rev().map(|at| 1.0 - at).collect(),
+        lengths: steps.lengths.iter().rev().copied().collect(),
+        why: Vec::new(),
     }
-    BorderSpacing { at, lengths, why: Vec::new() }
-}
-
-/// Steps along the segments of a side as shares of it; where nothing is known yet, those of `rows`.
-fn on_side(rows: &BorderSpacing, side: &FaceSide, known: &BTreeMap<usize, BorderSpacing>) -> BorderSpacing {
-    let mut whole = BorderSpacing { at: Vec::new(), lengths: Vec::new(), why: Vec::new() };
-    for part in &side.uses {
-        let (from, to) = (part.s.0 / side.length, part.s.1 / side.length);
-        let mut places: Vec<(f64, f64)> = match known.get(&part.segment) {
-            Some(spacing) => spacing.at.iter().zip(&spacing.lengths).map(|(f, length)| (*f, length / side.length)).collect(),
-            None => [0.0, 1.0].map(|f| (f, rows.length_at(from + (to - from) * f))).to_vec(),
-        };
-        if part.against {
-            places = places.into_iter().rev().map(|(f, length)| (1.0 - f, length)).collect();
-        }
-        for (f, length) in places {
-            let at = from + (to - from) * f;
-            match whole.at.last() {
-                Some(last) if at <= *last => {
-                    let last = whole.lengths.len() - 1;
-                    whole.lengths[last] = whole.lengths[last].min(length);
-                }
-                _ => {
-                    whole.at.push(at);
-                    whole.lengths.push(length);
-                }
-            }
-        }
-    }
-    whole
 }
