@@ -13,6 +13,8 @@ import subprocess
 import tempfile
 
 KINDS = 9
+# Seconds after which a run is ended.
+LONGEST = 60
 
 
 def spline(rnd, count, size, height, y):
@@ -77,9 +79,9 @@ def run(program, script):
     """Exit status, CPU seconds and the mesh of a run."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     try:
-        done = subprocess.run([program, "run", script, "--threads", "1", "--json"], capture_output=True, text=True, timeout=300)
+        done = subprocess.run([program, "run", script, "--threads", "1", "--json"], capture_output=True, text=True, timeout=LONGEST)
     except subprocess.TimeoutExpired:
-        return "over 300 s", None, None
+        return f"over {LONGEST} s", None, None
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     meshes = json.loads(done.stdout)["meshes"] if done.stdout else []
     seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
