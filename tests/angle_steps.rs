@@ -92,8 +92,6 @@ fn curves_take_few_more_steps_than_their_angle_needs() {
         for (mesh, limit) in under_limits(&shape).iter().zip(LIMITS) {
             let geometry = &mesh.geometries.0[0];
             let steps = cells(geometry)[1].max(cells(geometry)[0]);
-            assert!(steps >= before, "{shape}{limit}°: {steps} after {before}");
-            before = steps;
             let along_v = cells(geometry)[1] == steps;
             let at = |k: u32| f64::from(k) / 600.0;
             let place = |t: f64| if along_v { (0.5, t) } else { (t, 0.5) };
@@ -107,6 +105,9 @@ fn curves_take_few_more_steps_than_their_angle_needs() {
                 sampled.push((s, geometry.surface.normal(u, v)));
             }
             let best = least_along(&sampled, limit.to_radians());
+            // Uneven rows are fewer than the fewest even ones.
+            assert!(steps >= before || steps < best, "{shape}{limit}°: {steps} after {before}, where {best} even ones do");
+            before = steps;
             let over = (steps as f64 - 1.0) / best as f64;
             if over > worst.0 {
                 worst = (over, format!("{shape}{limit}°: {steps} where {best} do"));

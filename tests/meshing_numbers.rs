@@ -406,6 +406,8 @@ fn a_chain_of_kinked_arcs_takes_the_steps_of_its_arcs() {
 
 #[test]
 fn looser_limits_never_take_more_steps_along_a_curve() {
+    // Where uneven rows become even again there may be twice as many.
+    let even = |limit: &str| format!("{limit}  on p {{ bias: 1 }}");
     let mut state = 3;
     for case in 0..2 {
         let waves = 2 + 2 * case;
@@ -414,7 +416,7 @@ fn looser_limits_never_take_more_steps_along_a_curve() {
         let profile = format!("curve p = spline([{}])\n", points.join(", "));
         let mut before = usize::MAX;
         for limit in [12.0, 15.5, 20.0, 27.0, 40.0, 61.0, 90.0_f64] {
-            let (steps, mesh) = steps_of(&profile, &format!("angle_error: {limit}deg"));
+            let (steps, mesh) = steps_of(&profile, &even(&format!("angle_error: {limit}deg")));
             assert!(steps <= before, "{profile}{limit}°: {steps} after {before}");
             before = steps;
             assert!(turn(&mesh) <= limit.to_radians() * 1.0001, "{profile}{limit}°: {}", turn(&mesh).to_degrees());
@@ -440,7 +442,7 @@ fn looser_limits_never_take_more_steps_along_a_curve() {
         }
         let mut before = usize::MAX;
         for limit in [2.0, 4.0, 7.0, 11.0, 20.0, 35.0, 60.0, 200.0] {
-            let (steps, _) = steps_of(&profile, &format!("chord_error: {limit}mm"));
+            let (steps, _) = steps_of(&profile, &even(&format!("chord_error: {limit}mm")));
             assert!(steps <= before, "{profile}{limit} mm: {steps} after {before}");
             before = steps;
         }

@@ -21,8 +21,8 @@ pub(super) struct OppositeSegments {
 }
 
 impl OppositeSegments {
-    /// Of a layout; shares may differ by `max_misfit`.
-    pub fn new(layout: &Layout, max_misfit: f64) -> Self {
+    /// Of a layout; segments on opposite sides may end so far from the same shares of these, model units.
+    pub fn new(layout: &Layout, near: f64) -> Self {
         let n = layout.pieces.segments.len();
         let mut strip: Vec<usize> = (0..n).collect();
         // Each segment in both directions: 2 k along it, 2 k + 1 against it.
@@ -31,7 +31,7 @@ impl OppositeSegments {
         for (f, face) in layout.faces.iter().enumerate().filter(|(_, face)| !face.free && !face.is_triangle()) {
             for direction in [0, 1] {
                 let [a, b] = [&face.sides[direction], &face.sides[direction + 2]];
-                aligned[f][direction] = is_aligned(a, b, max_misfit);
+                aligned[f][direction] = is_aligned(a, b, near);
                 let along: Vec<usize> = [a, b].into_iter().flat_map(FaceSide::segments).collect();
                 along.windows(2).for_each(|w| join(&mut strip, w[0], w[1]));
                 if aligned[f][direction] {
@@ -83,8 +83,8 @@ fn join(parent: &mut [usize], a: usize, b: usize) {
 }
 
 /// Whether two sides are divided into segments at the same shares of their lengths, or one of them is a pole.
-fn is_aligned(a: &FaceSide, b: &FaceSide, max_misfit: f64) -> bool {
+fn is_aligned(a: &FaceSide, b: &FaceSide, near: f64) -> bool {
     let end = |side: &FaceSide, k: usize| side.uses[k].s.1 / side.length;
-    let same = |k: usize| (end(a, k) - end(b, k)).abs() <= max_misfit;
+    let same = |k: usize| (end(a, k) - end(b, k)).abs() * a.length.min(b.length) <= near;
     a.uses.is_empty() || b.uses.is_empty() || a.uses.len() == b.uses.len() && (0..a.uses.len()).all(same)
 }

@@ -23,15 +23,13 @@ struct RowSettings {
     min_gain: f64,
     /// And this many more.
     min_saved: f64,
-    /// Largest difference of the shares at which two sides are divided into segments.
-    max_misfit: f64,
     /// Largest difference of the shares at which a row meets both sides, over its steps there.
     max_lean: f64,
     /// Rounds in which steps grow from segment to segment along sides.
     growth_rounds: usize,
 }
 
-const SETTINGS: RowSettings = RowSettings { min_gain: 2.0, min_saved: 8.0, max_misfit: 1e-6, max_lean: 0.5, growth_rounds: 4 };
+const SETTINGS: RowSettings = RowSettings { min_gain: 2.0, min_saved: 8.0, max_lean: 0.5, growth_rounds: 4 };
 
 /// Numbers of rows of a face along a direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,7 +63,7 @@ pub(super) fn lower_to_rows(input: &Input, layout: &Layout, given: &SpacingInput
     if given.limits.chord.is_none() && given.limits.angle.is_none() {
         return uneven;
     }
-    let opposite = OppositeSegments::new(layout, SETTINGS.max_misfit);
+    let opposite = OppositeSegments::new(layout, input.tolerance.point);
     for strip in strips(layout, given, &opposite) {
         job::poll();
         let demands = par::map(strip.len(), |k| demands(input, layout, given, &strip[k]));
