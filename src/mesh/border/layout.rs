@@ -55,7 +55,7 @@ pub struct Face {
     pub uneven: Option<Uneven>,
     /// It stays mapped whatever its map is like: meshed freely it failed, or turned out worse.
     pub kept: bool,
-    /// Its rows are even: uneven ones would lean.
+    /// Its rows are even: uneven ones would lean, or be more.
     pub even_rows: bool,
     /// Elements that it was foreseen to have where it is meshed freely for better angles.
     pub foreseen_free: u64,

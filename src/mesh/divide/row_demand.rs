@@ -25,7 +25,7 @@ pub struct RowDemand {
 }
 
 impl RowDemand {
-    /// The same where so many rows are as uneven as bends are: no place is bent more than their steps there allow.
+    /// The same for so many uneven rows, which are spaced for the limits already.
     pub fn of_uneven(self, rows: u32) -> Self {
         let rows = f64::from(rows);
         let share = rows / rows.max(self.least);

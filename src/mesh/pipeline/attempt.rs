@@ -83,7 +83,7 @@ enum Retry {
     BrokenSteps(Vec<(usize, u32)>),
     /// A face breaks a limit: its rows demand more steps.
     BrokenLimits,
-    /// Uneven rows of faces lean, or limits demand many more of them: these become even.
+    /// Uneven rows of faces lean, or limits demand more of them than of even ones: these become even.
     UnfitRows(Vec<usize>),
     /// Faces have elements or edges between the same nodes.
     Coincident(Demand),

@@ -1,7 +1,7 @@
 //! Segments that are opposite to each other: across mapped faces whose sides are divided into segments at the same shares of their lengths.
 
 use crate::mesh::border::layout::{FaceSide, Layout};
-use crate::model::glue::root;
+use crate::model::glue::{join, root};
 
 /// The first of the segments that are opposite to one, and to each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,7 +21,7 @@ pub(super) struct OppositeSegments {
 }
 
 impl OppositeSegments {
-    /// Of a layout; segments on opposite sides may end so far from the same shares of these, model units.
+    /// Of a layout. The ends of opposite segments may be `near` apart, model units, when both are taken as shares of their sides.
     pub fn new(layout: &Layout, near: f64) -> Self {
         let n = layout.pieces.segments.len();
         let mut strip: Vec<usize> = (0..n).collect();
@@ -75,11 +75,6 @@ impl OppositeSegments {
     pub fn is_aligned(&self, face: usize, direction: usize) -> bool {
         self.aligned[face][direction]
     }
-}
-
-fn join(parent: &mut [usize], a: usize, b: usize) {
-    let (a, b) = (root(parent, a), root(parent, b));
-    parent[a.max(b)] = a.min(b);
 }
 
 /// Whether two sides are divided into segments at the same shares of their lengths, or one of them is a pole.

@@ -50,8 +50,8 @@ pub(super) struct RowDirection<'a> {
     direction: usize,
     /// Sides along the direction; a pole has the map of the other one.
     sides: [SideMap<'a>; 2],
-    /// Range of the parameter along the direction.
-    range: (f64, f64),
+    /// Values of the parameter along the direction at break lines inside the face, ascending.
+    breaks: Vec<f64>,
     /// Values of the other parameter at which bends are taken: the first and the last are those of the sides.
     across: Vec<f64>,
     /// Step of the other parameter that the size allows.
@@ -70,11 +70,11 @@ impl<'a> RowDirection<'a> {
             (false, false) => return None,
         };
         let patch = &input.model.patches[face.patch.index()];
-        let (range, (low, high)) = if direction == 0 { (patch.u, patch.v) } else { (patch.v, patch.u) };
-        let breaks = evaluator.surface().breaks();
-        let breaks = if direction == 0 { breaks.1 } else { breaks.0 };
+        let (us, vs) = evaluator.surface().breaks();
+        let inside = |lines: Vec<f64>, (low, high): (f64, f64)| lines.into_iter().filter(|x| *x > low && *x < high).collect::<Vec<f64>>();
+        let (us, vs) = (inside(us, patch.u), inside(vs, patch.v));
+        let (breaks, mut lines, (low, high)) = if direction == 0 { (us, vs, patch.v) } else { (vs, us, patch.u) };
         let mut across: Vec<f64> = (0..=SETTINGS.across).map(|k| low + (high - low) * k as f64 / SETTINGS.across as f64).collect();
-        let mut lines: Vec<f64> = breaks.into_iter().filter(|x| *x > low && *x < high).collect();
         if lines.len() <= SETTINGS.max_breaks && !lines.is_empty() {
             lines.insert(0, low);
             lines.push(high);
@@ -87,14 +87,14 @@ impl<'a> RowDirection<'a> {
             evaluator,
             limits,
             direction,
-            range,
+            breaks,
             sides: [SideMap::new(input, face, a), SideMap::new(input, face, b)],
             across,
             step_across,
         })
     }
 
-    /// The demand at every place.
+    /// The bends at every place.
     pub(super) fn profile(&self) -> RowProfile {
         let mut profile = RowProfile { stops: vec![0.0], bends: Vec::new(), longest: 0.0 };
         let mut lengths = vec![0.0; self.across.len()];
@@ -121,11 +121,7 @@ impl<'a> RowDirection<'a> {
 
     /// Shares of the sides where break lines meet one of them, with both ends.
     fn stops(&self) -> Vec<f64> {
-        let breaks = self.evaluator.surface().breaks();
-        let (low, high) = self.range;
-        let lines = if self.direction == 0 { breaks.0 } else { breaks.1 };
-        let lines: Vec<f64> = lines.into_iter().filter(|x| *x > low && *x < high).collect();
-        let mut stops: Vec<f64> = self.sides.iter().flat_map(|side| lines.iter().map(|x| side.share(*x))).collect();
+        let mut stops: Vec<f64> = self.sides.iter().flat_map(|side| self.breaks.iter().map(|x| side.share(*x))).collect();
         stops.retain(|f| *f > 0.0 && *f < 1.0);
         stops.extend([0.0, 1.0]);
         stops.sort_by(f64::total_cmp);

@@ -6,6 +6,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::base::tolerance::WHOLE_NUMBER;
 use crate::base::{job, par, work};
 use crate::mesh::border::layout::{Face, FaceSide, Layout};
 use crate::mesh::border::nodes::{Nodes, line};
@@ -177,20 +178,21 @@ impl Laws {
             let share = 1.0 / layout.length(segment);
             let mut own = spacings[segment].clone();
             own.lengths.iter_mut().for_each(|length| *length = length.min(given.size[segment]) * share);
-            laws.lower(opposite.of(segment), own);
+            // A step is no longer than its size, not by a little either.
+            laws.lower(opposite.of(segment), own, 1.0 - WHOLE_NUMBER);
         }
         laws
     }
 
-    /// Lowers the law of a segment to steps along it.
-    fn lower(&mut self, Opposite { first, is_reversed }: Opposite, steps: BorderSpacing) {
+    /// Lowers the law of a segment to steps along it, where these are below the share `min_change` of it somewhere.
+    fn lower(&mut self, Opposite { first, is_reversed }: Opposite, steps: BorderSpacing, min_change: f64) {
         let steps = if is_reversed { reversed(&steps) } else { steps };
         let Some(law) = self.0.get_mut(&first) else {
             self.0.insert(first, steps);
             return;
         };
         work::spend((steps.at.len() + law.at.len()) as u64);
-        let is_lower = |f: f64| steps.length_at(f) < SPACING_SETTINGS.min_change * law.length_at(f);
+        let is_lower = |f: f64| steps.length_at(f) < min_change * law.length_at(f);
         if steps.at.iter().chain(&law.at).any(|f| is_lower(*f)) {
             *law = law.lower(&steps);
         }
@@ -206,7 +208,7 @@ impl Laws {
             let lengths = places.iter().map(|at| steps.length_at(*at) / (to - from)).collect();
             let at = places.iter().map(|at| if *at == to { 1.0 } else { (at - from) / (to - from) }).collect();
             let own = BorderSpacing { at, lengths, why: Vec::new() };
-            self.lower(opposite.of(part.segment), if part.against { reversed(&own) } else { own });
+            self.lower(opposite.of(part.segment), if part.against { reversed(&own) } else { own }, SPACING_SETTINGS.min_change);
         }
     }
 
@@ -224,7 +226,7 @@ impl Laws {
                     if length < SPACING_SETTINGS.min_change * own.length_at(start) {
                         let share = 1.0 / layout.length(b.segment);
                         let grown = BorderSpacing::about(&[(start, length * share)], own.most() * share, slope);
-                        self.lower(opposite.of(b.segment), grown);
+                        self.lower(opposite.of(b.segment), grown, SPACING_SETTINGS.min_change);
                     }
                 }
             }

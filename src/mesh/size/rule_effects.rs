@@ -10,7 +10,7 @@ use crate::mesh::request::sources::Sources;
 use crate::mesh::size::border_spacing::BorderSpacings;
 use crate::mesh::size::remark::Remark;
 
-/// Settings of the whole mesh that act on free faces only; they follow the clauses in [`RuleEffects`].
+/// Settings of the whole mesh that act on free faces, and `growth` on uneven rows too; they follow the clauses in [`RuleEffects`].
 pub(crate) const FREE_ONLY: [&str; 3] = ["smooth", "growth", "regular"];
 
 /// Where one of them is written.
