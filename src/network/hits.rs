@@ -14,7 +14,7 @@ use crate::base::job::Job;
 use crate::base::par;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::curves::curve::Shape;
-use crate::geometry::intersect;
+use crate::geometry::query::intersect::{Lists, intersect_with};
 use crate::geometry::{Curve, Hit, self_intersect};
 
 /// One contact of two curves, or of a curve with itself.
@@ -104,7 +104,7 @@ fn of_pairs(curves: &[NetCurve], pairs: &[(u32, u32)], tolerance: &Tolerance, jo
     let chunks = par::try_map(pairs.len().div_ceil(CHUNK), |k| {
         job.go_on()?;
         let chunk = &pairs[k * CHUNK..((k + 1) * CHUNK).min(pairs.len())];
-        let mut contacts = Vec::with_capacity(chunk.len());
+        let (mut contacts, mut lists) = (Vec::with_capacity(chunk.len()), Lists::default());
         for &(a, b) in chunk {
             let (a, b) = if curves[a as usize].name <= curves[b as usize].name { (a, b) } else { (b, a) };
             let (first, second) = (&curves[a as usize].curve, &curves[b as usize].curve);
@@ -112,8 +112,12 @@ fn of_pairs(curves: &[NetCurve], pairs: &[(u32, u32)], tolerance: &Tolerance, jo
                 contacts.push(Contact { curves: [a, b], s, at, to: None });
                 continue;
             }
-            let hits = if a == b { self_intersect(first, tolerance)? } else { intersect(first, second, tolerance)? };
-            contacts.extend(hits.into_iter().map(|hit| contact([a, b], [first, second], hit)));
+            if a == b {
+                lists.hits = self_intersect(first, tolerance)?;
+            } else {
+                intersect_with(first, second, tolerance, &mut lists)?;
+            }
+            contacts.extend(lists.hits.iter().map(|hit| contact([a, b], [first, second], *hit)));
         }
         job.advance(chunk.len() as u64);
         Result::Ok(contacts)

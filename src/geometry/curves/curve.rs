@@ -232,10 +232,14 @@ impl Curve {
         self.0.pieces.get_or_init(|| Arc::new(work::uncharged(|| Pieces::of(self))))
     }
 
-    /// The pieces of a straight line that does not have them already: they are made in no time, and of very many lines not worth keeping.
-    pub(crate) fn passing_pieces(&self) -> Option<Pieces> {
-        let is_new = matches!(self.0.shape, Shape::Line(..)) && self.0.pieces.get().is_none();
-        is_new.then(|| work::uncharged(|| Pieces::of(self)))
+    /// Its pieces, in `own` when it is a straight line that does not have them already: they are made in no time, and of very many lines
+    /// not worth keeping.
+    pub(crate) fn passing_pieces<'a>(&'a self, own: &'a mut Option<Pieces>) -> &'a Pieces {
+        match self.0.pieces.get() {
+            Some(pieces) => pieces,
+            None if matches!(self.0.shape, Shape::Line(..)) => own.insert(work::uncharged(|| Pieces::of(self))),
+            None => self.pieces(),
+        }
     }
 
     /// Parameters between which the curve is one analytic piece, ends included.

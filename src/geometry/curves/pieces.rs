@@ -56,7 +56,7 @@ impl Section {
 #[derive(Clone, Copy)]
 pub(crate) struct View<'a> {
     pub(crate) curve: &'a Curve,
-    pub(crate) section: Section,
+    pub(crate) section: &'a Section,
 }
 
 impl View<'_> {
@@ -101,7 +101,7 @@ impl Node {
         let half_angle = 0.5 * h * rates.turn;
         let chord = p.0.distance(p.1);
         let (mut axis, mut cone) = (DVec3::ZERO, (1.0, 0.0));
-        let mut bulge = rates.bend * h * h * 0.125;
+        let mut bulge = Self::most_bulge(t, rates);
         if half_angle < std::f64::consts::FRAC_PI_2 {
             axis = at.d1.normalize_or_zero();
             cone = if axis == DVec3::ZERO { (1.0, 0.0) } else { math::sin_cos(half_angle) };
@@ -113,10 +113,23 @@ impl Node {
         Self { t, p, middle: at.p, axis, cone, bulge }
     }
 
+    /// What the second derivative allows: no part between these parameters bulges more.
+    #[inline]
+    pub(crate) fn most_bulge(t: (f64, f64), rates: Rates) -> f64 {
+        let h = t.1 - t.0;
+        rates.bend * h * h * 0.125
+    }
+
+    /// Parameters and end points of both halves.
+    #[inline]
+    pub(crate) fn half_ends(&self) -> [((f64, f64), (DVec3, DVec3)); 2] {
+        let t = 0.5 * (self.t.0 + self.t.1);
+        [((self.t.0, t), (self.p.0, self.middle)), ((t, self.t.1), (self.middle, self.p.1))]
+    }
+
     /// Both halves.
     pub(crate) fn halves(&self, view: &View, rates: Rates) -> [Self; 2] {
-        let t = 0.5 * (self.t.0 + self.t.1);
-        [Self::new(view, (self.t.0, t), (self.p.0, self.middle), rates), Self::new(view, (t, self.t.1), (self.middle, self.p.1), rates)]
+        self.half_ends().map(|(t, p)| Self::new(view, t, p, rates))
     }
 
     /// The box of the chord grown by the bulge.
@@ -176,7 +189,7 @@ impl Pieces {
     fn of_line(curve: &Curve) -> Self {
         let (range, rates) = (curve.domain(), Rates { turn: 0.0, bend: 0.0 });
         let section = Section { part: 0, range, common: range, ends: (curve.point(range.0), curve.point(range.1)) };
-        let node = Node::new(&View { curve, section }, range, section.ends, rates);
+        let node = Node::new(&View { curve, section: &section }, range, section.ends, rates);
         Self { sections: [section].into(), pieces: [Piece { node, rates, section: 0 }].into(), tree: [node.bounds()].into() }
     }
 
@@ -187,8 +200,9 @@ impl Pieces {
     }
 
     /// Section `index` as something that can be evaluated.
-    pub(crate) fn view_of<'a>(&self, curve: &'a Curve, index: usize) -> View<'a> {
-        let section = self.sections[index];
+    #[inline]
+    pub(crate) fn view_of<'a>(&'a self, curve: &'a Curve, index: usize) -> View<'a> {
+        let section = &self.sections[index];
         View { curve: curve.composite().map_or(curve, |c| &c.pieces[section.part]), section }
     }
 }
@@ -204,7 +218,7 @@ impl Cut {
             let ends = (curve.point(range.0), curve.point(range.1));
             let section = Section { part, range, common: outer, ends };
             self.sections.push(section);
-            let view = View { curve, section };
+            let view = View { curve, section: &section };
             for (t0, t1, rates) in rated(curve, section.range) {
                 let node = Node::new(&view, (t0, t1), (view.point(t0), view.point(t1)), rates);
                 self.pieces.push(Piece { node, rates, section: self.sections.len() - 1 });

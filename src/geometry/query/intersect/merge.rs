@@ -19,14 +19,15 @@ struct Point {
 /// How far back along the first curve a repeated meeting is looked for.
 const LOOK_BACK: usize = 16;
 
-/// All hits, ordered along the first curve.
-pub(crate) fn hits(search: &Search, shared: &[Shared], tolerance: &Tolerance) -> Vec<Hit> {
+/// All hits, ordered along the first curve, into an empty list.
+pub(crate) fn hits(search: &Search, shared: &[Shared], tolerance: &Tolerance, all: &mut Vec<Hit>) {
     if shared.is_empty() && search.found.is_empty() {
-        return Vec::new();
+        return;
     }
     if let ([found], true) = (search.found.as_slice(), shared.is_empty()) {
         // As nearly always: nothing to be compared with.
-        return vec![point(search, found, tolerance).hit()];
+        all.push(point(search, found, tolerance).hit());
+        return;
     }
     let overlaps = join(search, shared, tolerance);
     let (a, b) = (search.a, search.b);
@@ -38,11 +39,10 @@ pub(crate) fn hits(search: &Search, shared: &[Shared], tolerance: &Tolerance) ->
         .collect();
     points.sort_by(|x, y| x.ta.total_cmp(&y.ta).then(x.tb.total_cmp(&y.tb)));
     let points = once(points, a.curve, b.curve, tolerance);
-    let mut all: Vec<Hit> = points.iter().map(Point::hit).chain(overlaps.iter().map(|s| Hit::Overlap { a: s.a, b: s.b })).collect();
+    all.extend(points.iter().map(Point::hit).chain(overlaps.iter().map(|s| Hit::Overlap { a: s.a, b: s.b })));
     if !overlaps.is_empty() {
         all.sort_by(|x, y| x.start().total_cmp(&y.start()));
     }
-    all
 }
 
 impl Point {

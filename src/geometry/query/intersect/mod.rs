@@ -17,7 +17,7 @@ use crate::base::work;
 use crate::geometry::curves::curve::{Curve, Shape};
 use crate::geometry::data::fault::CurveFault;
 use crate::geometry::query::intersect::newton::segments;
-use crate::geometry::query::intersect::search::{Search, Side};
+use crate::geometry::query::intersect::search::{Found, Rect, Search, Side};
 
 /// Pairs of parts that are looked at in the time of an evaluation of a curve.
 const PER_EVALUATION: u64 = 2;
@@ -63,24 +63,43 @@ impl Hit {
 /// end that lies on the other curve within the tolerance is a hit at exactly that end. On a closed curve the first
 /// parameter stands for the last one too. E413 when the work exceeds its limit.
 pub fn intersect(a: &Curve, b: &Curve, tolerance: &Tolerance) -> Result<Vec<Hit>> {
+    let mut lists = Lists::default();
+    intersect_with(a, b, tolerance, &mut lists)?;
+    Ok(lists.hits)
+}
+
+/// What is found for one pair of curves; the lists serve one pair after the other, so that they are made once.
+#[derive(Default)]
+pub(crate) struct Lists {
+    found: Vec<Found>,
+    near: Vec<Rect>,
+    /// All meetings, ordered along the first curve.
+    pub(crate) hits: Vec<Hit>,
+}
+
+/// The same as [`intersect`], into the hits of lists that were filled before.
+pub(crate) fn intersect_with(a: &Curve, b: &Curve, tolerance: &Tolerance, lists: &mut Lists) -> Result<()> {
+    lists.hits.clear();
     if let (&Shape::Line(a0, a1), &Shape::Line(b0, b1)) = (a.shape(), b.shape()) {
         let apart = segments((a0, a1), (b0, b1)).0;
         if apart > tolerance.point * tolerance.point || apart.is_nan() {
-            return Ok(Vec::new());
+            return Ok(());
         }
     }
-    let passing = [a, b].map(Curve::passing_pieces);
-    let mut search = Search::new(Side::with(a, &passing[0]), Side::with(b, &passing[1]), tolerance.point);
+    let (mut own_a, mut own_b) = (None, None);
+    let mut search = Search::new(Side::passing(a, &mut own_a), Side::passing(b, &mut own_b), tolerance.point, lists);
     search.run();
-    finish(search, tolerance)
+    finish(&mut search, tolerance, lists)
 }
 
 /// Where a curve meets itself, other than the common ends of a closed one.
 pub fn self_intersect(curve: &Curve, tolerance: &Tolerance) -> Result<Vec<Hit>> {
     let side = Side::of(curve);
-    let mut search = Search::new(side, side, tolerance.point);
+    let mut lists = Lists::default();
+    let mut search = Search::new(side, side, tolerance.point, &mut lists);
     search.run_self();
-    let mut hits = finish(search, tolerance)?;
+    finish(&mut search, tolerance, &mut lists)?;
+    let mut hits = lists.hits;
     hits.retain(|hit| match hit {
         Hit::Point { ta, tb, .. } => !merge::same_place(curve, *ta, *tb, tolerance.point),
         Hit::Overlap { .. } => true,
@@ -88,12 +107,15 @@ pub fn self_intersect(curve: &Curve, tolerance: &Tolerance) -> Result<Vec<Hit>> 
     Ok(hits)
 }
 
-fn finish(mut search: Search, tolerance: &Tolerance) -> Result<Vec<Hit>> {
+/// Turns what a search found into hits and gives its lists back.
+fn finish(search: &mut Search, tolerance: &Tolerance, lists: &mut Lists) -> Result<()> {
     work::spend(search.looked_at as u64 / PER_EVALUATION);
     if let Some(at) = search.exhausted {
         let what = "where two curves meet".to_owned();
         return Err(CurveFault::NotConverged { of: search.a.curve.origin(), what, at }.into());
     }
-    let shared = if search.near.is_empty() { Vec::new() } else { contact::resolve(&mut search, tolerance) };
-    Ok(merge::hits(&search, &shared, tolerance))
+    let shared = if search.near.is_empty() { Vec::new() } else { contact::resolve(search, tolerance) };
+    merge::hits(search, &shared, tolerance, &mut lists.hits);
+    (lists.found, lists.near) = (std::mem::take(&mut search.found), std::mem::take(&mut search.near));
+    Ok(())
 }

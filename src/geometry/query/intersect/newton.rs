@@ -31,13 +31,14 @@ impl Near {
 pub(crate) fn approach(a: &View, b: &View, (mut s, mut t): (f64, f64)) -> Near {
     let (ra, rb) = (a.section.range, b.section.range);
     let (slack_a, slack_b) = (NEWTON_STEP * (ra.1 - ra.0), NEWTON_STEP * (rb.1 - rb.0));
-    let mut best: Option<Near> = None;
+    let mut best: Option<(f64, Near)> = None;
+    job::poll();
     for _ in 0..ROUNDS {
-        job::poll();
         let (ja, jb) = (a.jet(s), b.jet(t));
         let here = Near { ta: s, tb: t, pa: ja.p, pb: jb.p };
-        if best.is_none_or(|best| here.gap() < best.gap()) {
-            best = Some(here);
+        let gap = here.gap();
+        if best.is_none_or(|(least, _)| gap < least) {
+            best = Some((gap, here));
         }
         let (ds, dt) = newton_step(&ja, &jb, (at_end(s, ra), at_end(t, rb)));
         let (next_s, next_t) = ((s + ds).clamp(ra.0, ra.1), (t + dt).clamp(rb.0, rb.1));
@@ -51,7 +52,7 @@ pub(crate) fn approach(a: &View, b: &View, (mut s, mut t): (f64, f64)) -> Near {
             return Near { ta: s, tb: t, pa: ja.p + ja.d1 * ds, pb: jb.p + jb.d1 * dt };
         }
     }
-    best.unwrap_or(Near { ta: s, tb: t, pa: a.point(s), pb: b.point(t) })
+    best.map_or_else(|| Near { ta: s, tb: t, pa: a.point(s), pb: b.point(t) }, |(_, best)| best)
 }
 
 /// Which end of its range a parameter is at: −1, 0 or 1.

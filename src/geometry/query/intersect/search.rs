@@ -8,8 +8,10 @@ use glam::DVec3;
 
 use crate::base::math;
 use crate::base::tolerance::{NEWTON_STEP, NUDGE};
+use crate::base::work;
 use crate::geometry::curves::curve::Curve;
 use crate::geometry::curves::pieces::{Node, Pieces, View, children};
+use crate::geometry::query::intersect::Lists;
 use crate::geometry::query::intersect::circles::{common, one_circle};
 use crate::geometry::query::intersect::newton::{Near, approach, foot, segments};
 use crate::geometry::shapes::bounds::Rates;
@@ -52,9 +54,9 @@ impl<'a> Side<'a> {
         Self { curve, pieces: curve.pieces() }
     }
 
-    /// With the pieces that were made in passing, if any.
-    pub(crate) fn with(curve: &'a Curve, passing: &'a Option<Pieces>) -> Self {
-        Self { curve, pieces: passing.as_ref().unwrap_or_else(|| curve.pieces()) }
+    /// With the pieces of a straight line that does not keep them in `own`.
+    pub(crate) fn passing(curve: &'a Curve, own: &'a mut Option<Pieces>) -> Self {
+        Self { curve, pieces: curve.passing_pieces(own) }
     }
 
     pub(crate) fn view(&self, section: usize) -> View<'a> {
@@ -82,8 +84,12 @@ pub(crate) struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    pub(crate) fn new(a: Side<'a>, b: Side<'a>, point: f64) -> Self {
-        Self { a, b, point, found: Vec::new(), near: Vec::new(), exhausted: None, looked_at: 0 }
+    /// Nothing is found yet; the lists are those of `lists`, emptied.
+    pub(crate) fn new(a: Side<'a>, b: Side<'a>, point: f64, lists: &mut Lists) -> Self {
+        let (mut found, mut near) = (std::mem::take(&mut lists.found), std::mem::take(&mut lists.near));
+        found.clear();
+        near.clear();
+        Self { a, b, point, found, near, exhausted: None, looked_at: 0 }
     }
 
     /// All pairs of pieces of two curves.
@@ -169,13 +175,13 @@ impl<'a> Search<'a> {
             return;
         }
         let (pa, pb) = (Part { view: &va, rates: x.rates, section: x.section }, Part { view: &vb, rates: y.rates, section: y.section });
-        self.meet(&pa, &x.node, &pb, &y.node);
+        self.meet(&pa, &x.node, &pb, &y.node, segments(x.node.p, y.node.p));
     }
 
-    fn meet(&mut self, a: &Part, x: &Node, b: &Part, y: &Node) {
+    /// Two parts whose chords are `apart` (squared), nearest at shares `s` and `t` along them.
+    fn meet(&mut self, a: &Part, x: &Node, b: &Part, y: &Node, (apart, s, t): (f64, f64, f64)) {
         self.looked_at += 1;
         let bulges = x.bulge + y.bulge;
-        let (apart, s, t) = segments(x.p, y.p);
         let reach = bulges + self.point;
         // Also when the numbers have run out of range and compare with nothing.
         if apart > reach * reach || apart.is_nan() || reach.is_nan() {
@@ -204,17 +210,34 @@ impl<'a> Search<'a> {
         let first = if fine || x.bulge == y.bulge { length(x) >= length(y) } else { x.bulge > y.bulge };
         match (first, x.can_split(), y.can_split()) {
             (true, true, _) | (false, true, false) => {
-                let [left, right] = x.halves(a.view, a.rates);
-                self.meet(a, &left, b, y);
-                self.meet(a, &right, b, y);
+                for (t, p) in x.half_ends() {
+                    let chords = segments(p, y.p);
+                    if !self.far(chords.0, Node::most_bulge(t, a.rates) + y.bulge) {
+                        self.meet(a, &Node::new(a.view, t, p, a.rates), b, y, chords);
+                    }
+                }
             }
             (_, _, true) => {
-                let [left, right] = y.halves(b.view, b.rates);
-                self.meet(a, x, b, &left);
-                self.meet(a, x, b, &right);
+                for (t, p) in y.half_ends() {
+                    let chords = segments(x.p, p);
+                    if !self.far(chords.0, x.bulge + Node::most_bulge(t, b.rates)) {
+                        self.meet(a, x, b, &Node::new(b.view, t, p, b.rates), chords);
+                    }
+                }
             }
             (_, false, false) => self.near.push(Rect { sections: (a.section, b.section), a: x.t, b: y.t }),
         }
+    }
+
+    /// Whether two parts with at most these bulges cannot meet: then the half is not looked into, and costs what looking would.
+    fn far(&mut self, apart: f64, bulges: f64) -> bool {
+        let reach = bulges + self.point;
+        let far = apart > reach * reach;
+        if far {
+            self.looked_at += 1;
+            work::spend(1);
+        }
+        far
     }
 
     /// Whether both parts are about equally long, so that one gives the place on the other where they run together.
