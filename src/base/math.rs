@@ -25,7 +25,7 @@ pub fn tan(x: f64) -> f64 {
 /// Sine and cosine of an angle in radians, exact at quarter turns.
 pub fn sin_cos(x: f64) -> (f64, f64) {
     let quarters = x / std::f64::consts::FRAC_PI_2;
-    if quarters == quarters.trunc() && quarters.abs() < 1e15 {
+    if quarters.abs() < 1e15 && quarters as i64 as f64 == quarters {
         return match (quarters as i64).rem_euclid(4) {
             0 => (0.0, 1.0),
             1 => (1.0, 0.0),

@@ -46,22 +46,25 @@ fn mix<V: Linear>(a: V, b: V, share: f64) -> V {
 ///
 /// Level r combines neighbours j − 1 and j over the knots x[j-1]…x[j+p-r]. The last three and two points are values
 /// of the blossom, and their divided differences are the derivatives.
-#[inline]
+#[inline(always)]
 fn de_boor<V: Linear>(d: &mut [V], x: &[f64], t: f64) -> [V; 3] {
     let p = d.len() - 1;
+    let last = 1.0 / (x[p] - x[p - 1]);
+    let end = (t - x[p - 1]) * last;
+    // Knots do not decrease: where these are equal, so are all on either side of the span.
+    let bezier = x[0] == x[p - 1] && x[p] == x[2 * p - 1];
+    let even = (t - x[p - 1]) / (x[p] - x[p - 1]);
     for r in 1..p.saturating_sub(1) {
         for j in (r..=p).rev() {
             let (low, high) = (x[j - 1], x[j + p - r]);
-            d[j] = mix(d[j - 1], d[j], (t - low) / (high - low));
+            d[j] = mix(d[j - 1], d[j], if bezier { even } else { (t - low) / (high - low) });
         }
     }
-    let last = 1.0 / (x[p] - x[p - 1]);
-    let end = (t - x[p - 1]) * last;
     if p == 1 {
         let slope = d[1] - d[0];
         return [mix(d[0], d[1], end), slope * last, slope * 0.0];
     }
-    let (before, after) = (1.0 / (x[p] - x[p - 2]), 1.0 / (x[p + 1] - x[p - 1]));
+    let (before, after) = if bezier { (last, last) } else { (1.0 / (x[p] - x[p - 2]), 1.0 / (x[p + 1] - x[p - 1])) };
     let (first, second) = ((d[p - 1] - d[p - 2]) * before, (d[p] - d[p - 1]) * after);
     let (a, b) = (d[p - 2] + first * (t - x[p - 2]), d[p - 1] + second * (t - x[p - 1]));
     let degree = p as f64;
@@ -100,6 +103,9 @@ impl Nurbs {
     /// Index k of the non-empty span with x_k ≤ t < x_{k+1}; parameters outside the domain go to its ends.
     pub fn span(&self, t: f64) -> usize {
         let (first, last) = (self.degree, self.poles.len() - 1);
+        if first == last {
+            return first;
+        }
         let inner = &self.knots[first + 1..=last];
         let mut k = first + inner.partition_point(|x| *x <= t);
         // At the end of the domain, and beyond, the last span that is not empty.
@@ -127,12 +133,18 @@ impl Nurbs {
 
     /// Point and derivatives of the polynomial piece of span `k`, also outside it.
     pub fn jet_in(&self, k: usize, t: f64) -> Jet {
-        if self.degree <= COMMON_DEGREE { self.jet_on::<{ COMMON_DEGREE + 1 }>(k, t) } else { self.jet_on::<{ MAX_DEGREE + 1 }>(k, t) }
+        // The commonest degrees have loops of fixed length.
+        match self.degree {
+            2 => self.jet_on::<3>(2, k, t),
+            3 => self.jet_on::<4>(3, k, t),
+            p if p <= COMMON_DEGREE => self.jet_on::<{ COMMON_DEGREE + 1 }>(p, k, t),
+            p => self.jet_on::<{ MAX_DEGREE + 1 }>(p, k, t),
+        }
     }
 
-    /// The same by arrays of N poles, more than the degree.
-    fn jet_on<const N: usize>(&self, k: usize, t: f64) -> Jet {
-        let p = self.degree;
+    /// The same by arrays of N poles, more than the degree p.
+    #[inline(always)]
+    fn jet_on<const N: usize>(&self, p: usize, k: usize, t: f64) -> Jet {
         let (poles, x) = (&self.poles[k - p..=k], &self.knots[k + 1 - p..=k + p]);
         if self.polynomial {
             let w = 1.0 / poles[0].w;
