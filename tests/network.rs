@@ -76,7 +76,8 @@ fn structure() -> Vec<(&'static str, Curve)> {
 
 /// Everything about a network that must not depend on order: node points, and per curve by name its node points and link owners.
 fn canonical(network: &Network) -> Vec<String> {
-    let mut lines: Vec<String> = network.nodes.iter().map(|n| format!("node {:?} {}", n.point.to_array(), n.ends.len())).collect();
+    let mut lines: Vec<String> =
+        network.nodes.iter().zip(network.link_ends()).map(|(n, ends)| format!("node {:?} {}", n.point.to_array(), ends.len())).collect();
     for net in &network.curves {
         let nodes: Vec<[f64; 3]> = net.nodes.iter().map(|n| network.nodes[n.index()].point.to_array()).collect();
         let owners: Vec<(&str, bool)> =

@@ -30,12 +30,10 @@ crate::ids! {
 }
 
 /// A point where curves end or meet.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Node {
     /// Where it is: the declared point among the hits, else their mean.
     pub point: DVec3,
-    /// Links that end here, with `true` where the link ends and `false` where it starts; ascending.
-    pub ends: InlineList<(LinkId, bool), 2>,
 }
 
 /// A run of one curve between neighbouring nodes.
@@ -246,6 +244,16 @@ impl Network {
     pub fn start_of_turn(&self, run: &Run, tolerance: &Tolerance) -> Option<f64> {
         let net = &self.curves[self.find(&run.curve)?.index()];
         net.is_closed().then(|| net.stations[net.first_of_turn(run.s0.min(run.s1), tolerance)])
+    }
+
+    /// For each node the links that end there, with `true` where the link ends and `false` where it starts; ascending.
+    pub fn link_ends(&self) -> Vec<Vec<(LinkId, bool)>> {
+        let mut ends = vec![Vec::new(); self.nodes.len()];
+        for (k, link) in self.links.iter().enumerate() {
+            ends[link.nodes.0.index()].push((LinkId::at(k), false));
+            ends[link.nodes.1.index()].push((LinkId::at(k), true));
+        }
+        ends
     }
 
     /// The node within tolerance of a point; the nearest one.

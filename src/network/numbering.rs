@@ -4,7 +4,6 @@ use super::assemble::Stations;
 use super::graph::{CurveId, Link, LinkId, NetCurve, Node, NodeId};
 use super::shared;
 use crate::base::fault::Fault;
-use crate::base::inline_list::InlineList;
 
 /// Not numbered yet.
 const NONE: u32 = u32::MAX;
@@ -21,7 +20,7 @@ pub fn number(curves: &mut [NetCurve], stations: Stations, shared: shared::Share
             let number = &mut number_of[station.node as usize];
             if *number == NONE {
                 *number = nodes.len() as u32;
-                nodes.push(Node { point: stations.points[station.node as usize], ends: InlineList::default() });
+                nodes.push(Node { point: stations.points[station.node as usize] });
             }
             own.push(NodeId(*number));
             at.push(station.s);
@@ -35,7 +34,6 @@ pub fn number(curves: &mut [NetCurve], stations: Stations, shared: shared::Share
     }
     drop((stations, number_of));
     let links = links(curves, &shared);
-    ends(&mut nodes, &links);
     (nodes, links, shared.notes)
 }
 
@@ -67,29 +65,6 @@ fn links(curves: &mut [NetCurve], shared: &shared::Shared) -> Vec<Link> {
         }
     }
     links
-}
-
-/// Tells each node the links that end in it, ascending.
-fn ends(nodes: &mut [Node], links: &[Link]) {
-    let mut first = vec![0_u32; nodes.len() + 1];
-    for link in links {
-        first[link.nodes.0.index() + 1] += 1;
-        first[link.nodes.1.index() + 1] += 1;
-    }
-    for k in 0..nodes.len() {
-        first[k + 1] += first[k];
-    }
-    let (mut next, mut all) = (first.clone(), vec![(LinkId(NONE), false); 2 * links.len()]);
-    for (k, link) in links.iter().enumerate() {
-        for (node, last) in [(link.nodes.0, false), (link.nodes.1, true)] {
-            let place = &mut next[node.index()];
-            all[*place as usize] = (LinkId::at(k), last);
-            *place += 1;
-        }
-    }
-    for (k, node) in nodes.iter_mut().enumerate() {
-        node.ends = all[first[k] as usize..first[k + 1] as usize].into();
-    }
 }
 
 /// Whether a segment of one curve runs against the segment of another that it shares.

@@ -50,9 +50,9 @@ fn curves(parts: &Parts, network: &Network, unit: &str) -> Table {
 }
 
 fn nodes(network: &Network, unit: &str, tolerance: &Tolerance) -> Table {
-    let names = meeting(network);
+    let (names, ends) = (meeting(network), network.link_ends());
     let row = |(n, node): (usize, &crate::network::graph::Node)| {
-        vec![Cell::Number((n + 1) as f64), place(node.point, tolerance), Cell::Number(node.ends.len() as f64), text(names[n].join(", "))]
+        vec![Cell::Number((n + 1) as f64), place(node.point, tolerance), Cell::Number(ends[n].len() as f64), text(names[n].join(", "))]
     };
     let columns = vec![column("node", None), column("at", Some(unit)), column("links", None), column("of", None)];
     Table { title: String::new(), columns, rows: network.nodes.iter().enumerate().map(row).collect() }
