@@ -40,6 +40,11 @@ impl Box3 {
         (self.min - DVec3::splat(margin)).cmple(other.max).all() && other.min.cmple(self.max + DVec3::splat(margin)).all()
     }
 
+    /// The box with its sides further out by `margin`.
+    pub fn grown(&self, margin: f64) -> Self {
+        Self { min: self.min - DVec3::splat(margin), max: self.max + DVec3::splat(margin) }
+    }
+
     /// Square of the distance of a point, model units; 0 inside.
     pub fn distance_squared(&self, p: DVec3) -> f64 {
         p.distance_squared(p.clamp(self.min, self.max))

@@ -18,6 +18,9 @@ const FAN: usize = 8;
 pub const PAIR: u64 = 4;
 /// Bits of each coordinate in the sorting key.
 const KEY_BITS: u32 = 21;
+/// Bits that are looked up at once, and how many times.
+const PART: usize = 7;
+const PARTS: usize = KEY_BITS as usize / PART;
 
 /// Boxes that can be asked for neighbours. Items keep the index they had in the list given.
 #[derive(Clone, Debug, Default)]
@@ -35,11 +38,12 @@ impl BoxTree {
         let size = all.max - all.min;
         let scale = |x: f64| if x > 0.0 { ((1_u64 << KEY_BITS) - 1) as f64 / x } else { 0.0 };
         let scale = DVec3::new(scale(size.x), scale(size.y), scale(size.z));
-        let cuts = cuts(boxes, size);
+        let parts = key_parts(&cuts(boxes, size));
         let key = |b: &Box3| {
             let at = (b.center() - all.min) * scale;
-            let at = [at.x as u64, at.y as u64, at.z as u64];
-            cuts.iter().fold(0, |key, &(axis, bit)| key << 1 | (at[axis] >> bit & 1))
+            let key =
+                |axis: usize, at: usize| (0..PARTS).fold(0, |key, part| key | parts[axis][part][at >> (part * PART) & (1 << PART) - 1]);
+            key(0, at.x as usize) | key(1, at.y as usize) | key(2, at.z as usize)
         };
         let mut order: Vec<(u64, u32)> = boxes.iter().enumerate().map(|(k, b)| (key(b), k as u32)).collect();
         order.sort_unstable();
@@ -87,8 +91,8 @@ impl BoxTree {
         let mut stack: Vec<(usize, usize, usize)> = Vec::new();
         let mut look = |stack: &mut Vec<(usize, usize, usize)>, level: usize, a: usize, others: std::ops::Range<usize>| {
             let boxes = &self.levels[level];
-            let own = &boxes[a];
-            for b in others.filter(|&b| a == b || own.touches(&boxes[b], margin)) {
+            let own = boxes[a].grown(margin);
+            for b in others.filter(|&b| a == b || own.touches(&boxes[b], 0.0)) {
                 if level > 0 {
                     stack.push((level, a, b));
                 } else if a != b {
@@ -105,11 +109,15 @@ impl BoxTree {
         while let Some((level, a, b)) = stack.pop() {
             job::poll();
             for c in self.children(level, a) {
+                // A child that is away from the whole other node is away from all in it.
+                if a != b && !self.levels[level - 1][c].touches(&self.levels[level][b], margin) {
+                    continue;
+                }
                 let others = if a == b { c..self.children(level, a).end } else { self.children(level, b) };
                 look(&mut stack, level - 1, c, others);
             }
         }
-        pairs.sort_unstable();
+        sort_pairs(&mut pairs, self.items.len());
         pairs
     }
 
@@ -139,6 +147,45 @@ impl BoxTree {
     fn children(&self, level: usize, k: usize) -> std::ops::Range<usize> {
         k * FAN..((k + 1) * FAN).min(self.levels[level - 1].len())
     }
+}
+
+/// Sorts pairs of `n` items: counted by their first item, then sorted by the second one.
+fn sort_pairs(pairs: &mut [(u32, u32)], n: usize) {
+    let mut next = vec![0_u32; n + 1];
+    for (a, _) in pairs.iter() {
+        next[*a as usize + 1] += 1;
+    }
+    for k in 0..n {
+        next[k + 1] += next[k];
+    }
+    let mut seconds = vec![0_u32; pairs.len()];
+    for (a, b) in pairs.iter() {
+        let place = &mut next[*a as usize];
+        seconds[*place as usize] = *b;
+        *place += 1;
+    }
+    // Where the pairs of an item end, those of the next one begin.
+    let mut from = 0;
+    for (a, to) in next[..n].iter().map(|to| *to as usize).enumerate() {
+        seconds[from..to].sort_unstable();
+        pairs[from..to].iter_mut().zip(&seconds[from..to]).for_each(|(pair, b)| *pair = (a as u32, *b));
+        from = to;
+    }
+}
+
+/// The bits of a coordinate in the sorting key, `PART` of them at a time.
+type KeyParts = [[[u64; 1 << PART]; PARTS]; 3];
+
+/// What each coordinate adds to the key when the cuts, the first one highest, are its bits.
+fn key_parts(cuts: &[(usize, u32)]) -> KeyParts {
+    let mut parts = [[[0; 1 << PART]; PARTS]; 3];
+    for (place, &(axis, bit)) in cuts.iter().rev().enumerate() {
+        let (part, bit) = (bit as usize / PART, bit as usize % PART);
+        for (value, key) in parts[axis][part].iter_mut().enumerate() {
+            *key |= ((value >> bit & 1) as u64) << place;
+        }
+    }
+    parts
 }
 
 /// Bits of the coordinates, as axis and place, in the order in which they cut the cells: always across the longest side

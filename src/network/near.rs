@@ -146,8 +146,13 @@ fn miss(curves: &[NetCurve], end: End, other: usize, one: Option<usize>, toleran
     }
     // A curve that passes through the end's node, or meets this curve a little before its end, is not missed.
     let length = net.curve.length();
-    let stub = |s: f64| if last { length - s <= 2.0 * reach } else { s <= 2.0 * reach };
-    if net.nodes.iter().zip(&net.stations).any(|(node, &s)| stub(s) && target.nodes.contains(node)) {
+    let stations = &net.stations;
+    let stub = if last {
+        stations.partition_point(|s| length - s > 2.0 * reach)..stations.len()
+    } else {
+        0..stations.partition_point(|s| *s <= 2.0 * reach)
+    };
+    if net.nodes[stub].iter().any(|node| target.nodes.contains(node)) {
         return None;
     }
     if !may_come_near(&target.curve, at, reach) {
