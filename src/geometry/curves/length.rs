@@ -9,6 +9,7 @@ impl Curve {
     /// Arc length, model units (relative error 1e-13).
     pub fn length(&self) -> f64 {
         match self.shape() {
+            Shape::Line(a, b) => a.distance(*b),
             Shape::Composite(c) => c.starts()[c.pieces.len()],
             _ => match self.even_speed() {
                 Some(speed) => speed * (self.domain().1 - self.domain().0),

@@ -285,6 +285,12 @@ impl<'a> Search<'a> {
         let close = END_REACH * self.point;
         // Further along, an end may still lie within the tolerance when the curves part slowly.
         let slow = (2.0 * self.point / sine).max(close);
+        let off = |view: &View, p: DVec3| [view.section.ends.0, view.section.ends.1].map(|end| end.distance_squared(p));
+        let away = [off(a.view, near.pa), off(b.view, near.pb)];
+        if away.as_flattened().iter().all(|away| *away > slow * slow) {
+            self.found.push(found);
+            return;
+        }
         let mut taken: Option<Near> = None;
         for (view, other, first) in [(a.view, b.view, true), (b.view, a.view, false)] {
             let from = if first { near.pa } else { near.pb };
