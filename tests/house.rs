@@ -98,8 +98,8 @@ const OUTSIDE: &[&str] = &["std::fs", "std::env", "std::time", "println!", "epri
 
 /// Lines a floor may have, tests included; a higher number is a change of its own, with the reason.
 const CEILINGS: &[(&str, usize)] = &[
-    ("base", 4_700),
-    ("geometry", 6_350),
+    ("base", 4_800),
+    ("geometry", 6_450),
     ("network", 5_150),
     ("surface", 30_200),
     ("model", 7_100),
