@@ -42,7 +42,7 @@ impl BoxTree {
         let key = |b: &Box3| {
             let at = (b.center() - all.min) * scale;
             let key =
-                |axis: usize, at: usize| (0..PARTS).fold(0, |key, part| key | parts[axis][part][at >> (part * PART) & (1 << PART) - 1]);
+                |axis: usize, at: usize| (0..PARTS).fold(0, |key, part| key | parts[axis][part][(at >> (part * PART)) & ((1 << PART) - 1)]);
             key(0, at.x as usize) | key(1, at.y as usize) | key(2, at.z as usize)
         };
         let mut order: Vec<(u64, u32)> = boxes.iter().enumerate().map(|(k, b)| (key(b), k as u32)).collect();

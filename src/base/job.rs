@@ -226,7 +226,8 @@ impl Job {
     }
 
     fn watch_run<T>(&self, run: Option<Arc<Work>>, work: impl FnOnce() -> T) -> Result<T> {
-        let _entered = Watched { job: Some(self.shared.clone()), work: run }.enter();
+        let watched = Watched { job: Some(self.shared.clone()), work: run };
+        let _entered = Entered { before: WATCHED.replace(watched) };
         match catch_unwind(AssertUnwindSafe(work)) {
             Ok(done) => Ok(done),
             Err(payload) if payload.is::<Cancelled>() => Err(Fault::Interrupted),

@@ -186,6 +186,7 @@ fn bend_of(c: &[f64]) -> f64 {
 
 impl Inside {
     /// Length up to x, and its derivative by x.
+    #[inline]
     fn length_and_speed(&self, x: f64) -> (f64, f64) {
         chebyshev(&self.length[..self.terms], x)
     }

@@ -157,8 +157,14 @@ impl Curve {
     }
 
     /// Point and derivatives at a parameter of the domain; at a corner those of the piece that follows.
+    #[inline]
     pub fn jet(&self, t: f64) -> Jet {
         work::spend(1);
+        // Straight lines, which are many, need no call.
+        if let Shape::Line(a, b) = &self.0.shape { line_jet(*a, *b, t) } else { self.jet_of_shape(t) }
+    }
+
+    fn jet_of_shape(&self, t: f64) -> Jet {
         match &self.0.shape {
             Shape::Line(a, b) => line_jet(*a, *b, t),
             Shape::Arc(arc) => arc.jet(t),
