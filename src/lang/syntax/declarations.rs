@@ -29,9 +29,9 @@ pub struct Declarations {
     last: LastWhole,
 }
 
-/// The tree that was made last, with the place of its declaration: one is often asked for several times in a row.
+/// The tree that was made last, with the places of its declaration and of its shape: one is often asked for several times in a row.
 #[derive(Default)]
-struct LastWhole(Mutex<Option<(usize, Arc<Declaration>)>>);
+struct LastWhole(Mutex<Option<(usize, u32, Arc<Declaration>)>>);
 
 impl Clone for LastWhole {
     fn clone(&self) -> Self {
@@ -67,13 +67,17 @@ impl TokenPlaces {
     fn of(tokens: &mut Tokens) -> Self {
         let (starts, ends) = (std::mem::take(&mut tokens.starts), std::mem::take(&mut tokens.ends));
         let lengths: Vec<u8> = starts.iter().zip(&ends).map(|(start, end)| u8::try_from(end - start).unwrap_or(0)).collect();
-        let long_ends = (0..).zip(&lengths).zip(&ends).filter(|((_, length), _)| **length == 0).map(|((at, _), end)| (at, *end)).collect();
+        let mut long_ends = BTreeMap::new();
+        if lengths.contains(&0) {
+            long_ends.extend((0..).zip(&lengths).zip(&ends).filter(|((_, length), _)| **length == 0).map(|((at, _), end)| (at, *end)));
+        }
         let mut places = Self { starts, lengths, long_ends };
         places.starts.shrink_to_fit();
         places
     }
 
     /// From the first to the last of two tokens.
+    #[inline]
     pub fn stretch(&self, first: usize, last: usize) -> Option<Span> {
         let end = match *self.lengths.get(last)? {
             0 => *self.long_ends.get(&(last as u32))?,
@@ -146,15 +150,24 @@ impl Declarations {
             DeclarationSource::Whole(at) => Arc::clone(&self.wholes[at as usize]),
             DeclarationSource::Shared { shape, token, name } => {
                 let mut last = self.last.0.lock().unwrap_or_else(PoisonError::into_inner);
-                if let Some((_, whole)) = last.as_ref().filter(|last| last.0 == at) {
+                if let Some((_, _, whole)) = last.as_ref().filter(|last| last.0 == at) {
                     return Arc::clone(whole);
                 }
+                let place = shape;
                 let shape = &self.shapes[shape as usize];
                 let own = &self.names[name as usize..name as usize + shape.names.len()];
                 let places = Places::Kept(&self.tokens);
                 let mut filler = Filler { source: &self.text, places, base: token as usize, names: NameSource::Listed(own.iter()) };
-                let whole = Arc::new(filler.fill(shape, self.docs.get(&(at as u32)).cloned()));
-                *last = Some((at, Arc::clone(&whole)));
+                let doc = self.docs.get(&(at as u32)).cloned();
+                if let Some((of, _, whole)) = last.as_mut().filter(|last| last.1 == place)
+                    && let Some(used) = Arc::get_mut(whole)
+                {
+                    filler.fill_again(shape, used, doc);
+                    *of = at;
+                    return Arc::clone(whole);
+                }
+                let whole = Arc::new(filler.fill(shape, doc));
+                *last = Some((at, place, Arc::clone(&whole)));
                 whole
             }
         }

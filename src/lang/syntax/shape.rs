@@ -147,6 +147,36 @@ impl Filler<'_> {
         }
     }
 
+    /// The same into a declaration of this shape that nobody looks at any more, so that its lists need not be made again.
+    pub fn fill_again(&mut self, shape: &Shape, used: &mut Declaration, doc: Option<Box<str>>) {
+        let from = &shape.declaration;
+        let mut stretches = shape.stretches.iter();
+        for (n, node) in from.nodes.iter().zip(&mut used.nodes) {
+            node.span = self.span(n.span);
+            match (&n.expr, &mut node.expr) {
+                (Expr::Tuple(_) | Expr::List(_), _) => {}
+                (Expr::Number(_), Expr::Number(value)) => *value = number::value(self.text(n.span.start)),
+                (Expr::Name(name), Expr::Name(new_name)) => *new_name = self.name(*name),
+                (Expr::Call { name, name_span, args, .. }, Expr::Call { name: new_name, name_span: new_span, args: new_args, .. }) => {
+                    (*new_name, *new_span) = (self.name(*name), self.span(*name_span));
+                    for (arg, new) in args.iter().zip(new_args) {
+                        new.name = arg.name.map(|(name, span)| (self.name(name), self.span(span)));
+                    }
+                }
+                (_, new) => *new = self.expr(n, &mut stretches),
+            }
+        }
+        (used.span, used.keyword_span) = (self.span(from.span), self.span(from.keyword_span));
+        used.doc = doc;
+        match (&from.kind, &mut used.kind) {
+            (DeclarationKind::Value { bound, family, .. }, DeclarationKind::Value { bound: new_bound, .. }) if family.is_empty() => {
+                *new_bound = self.bound(*bound);
+            }
+            (kind, new) => *new = self.kind(kind),
+        }
+    }
+
+    #[inline]
     fn place(&self, first: u32, last: u32) -> Option<Span> {
         let (first, last) = (self.base + first as usize, self.base + last as usize);
         match self.places {
