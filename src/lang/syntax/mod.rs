@@ -107,6 +107,7 @@ fn read_as(source: &str, file: FileId, names: &mut Names, fills: bool) -> Tokeni
         found: Vec::new(),
         fresh: foreign::fresh_names::FreshNames::default(),
         sound: Vec::with_capacity(pieces.len()),
+        last: None,
     }
     .run(pieces, mistakes);
     TokenizedScript { script, found, tokens, sound }
@@ -139,6 +140,8 @@ struct Parser<'a> {
     fresh: foreign::fresh_names::FreshNames,
     /// Tokens of the declarations.
     sound: Vec<Range<usize>>,
+    /// Tokens and shape of the declaration before.
+    last: Option<(Range<usize>, KnownShape)>,
 }
 
 impl Parser<'_> {
@@ -202,8 +205,13 @@ impl Parser<'_> {
         if piece.broken {
             return self.broken(base, end);
         }
-        if let Some(known) = self.shapes.get(kinds) {
-            return self.declaration(base, &known, doc);
+        // Most declarations have the shape of the one before.
+        let same = |(tokens, _): &(Range<usize>, KnownShape)| self.tokens.kinds[tokens.clone()] == *kinds;
+        let last = self.last.take().filter(same).map(|(_, known)| known);
+        if let Some(known) = last.or_else(|| self.shapes.get(kinds)) {
+            self.declaration(base, &known, doc);
+            self.last = Some((base..end, known));
+            return;
         }
         match self.shape(base, end) {
             Ok(shape) => {

@@ -56,8 +56,30 @@ pub fn unit_words() -> impl Iterator<Item = &'static str> {
 
 /// Value of the digits of a number, `_` left out; the text comes from the scanner and is well formed.
 pub(crate) fn value(digits: &str) -> f64 {
+    if let Some(value) = short(digits.as_bytes()) {
+        return value;
+    }
     let parsed = if digits.contains('_') { digits.replace('_', "").parse() } else { digits.parse() };
     parsed.unwrap_or(f64::NAN)
+}
+
+/// Value of at most 15 digits with or without a point: a whole number over a power of ten. Both are exact, so the quotient is the
+/// number nearest to what is written.
+fn short(text: &[u8]) -> Option<f64> {
+    const POWERS: [f64; 16] = [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15];
+    let (mut whole, mut digits, mut point) = (0_u64, 0, None);
+    if text.len() > POWERS.len() {
+        return None;
+    }
+    for byte in text {
+        match byte {
+            b'0'..=b'9' => (whole, digits) = (10 * whole + u64::from(byte - b'0'), digits + 1),
+            b'.' if point.is_none() => point = Some(digits),
+            _ => return None,
+        }
+    }
+    let behind = digits - point.unwrap_or(digits);
+    (0 < digits && digits < POWERS.len()).then(|| whole as f64 / POWERS[behind])
 }
 
 /// Splits the text of a quantity into digits and unit.

@@ -62,9 +62,19 @@ struct Scanner<'a> {
     tokens: Tokens,
 }
 
+/// The ASCII letters and digits and `_`.
+static IN_WORD: [bool; 256] = {
+    let (mut table, mut byte) = ([false; 256], 0);
+    while byte < 128 {
+        table[byte] = (byte as u8).is_ascii_alphanumeric() || byte as u8 == b'_';
+        byte += 1;
+    }
+    table
+};
+
 /// Cuts a source of at most 32 MiB into tokens.
 pub(crate) fn scan(source: &str) -> Tokens {
-    let guess = source.len() / 4 + 8;
+    let guess = source.len() / 3 + 8;
     let tokens = Tokens {
         kinds: Vec::with_capacity(guess),
         starts: Vec::with_capacity(guess),
@@ -179,17 +189,16 @@ impl Scanner<'_> {
 
     /// Moves over a word; ASCII first, the rest by the Unicode tables.
     fn skip_word(&mut self) {
-        while self.at < self.bytes.len() {
-            let byte = self.bytes[self.at];
-            if byte.is_ascii_alphanumeric() || byte == b'_' {
-                self.at += 1;
-            } else if byte.is_ascii() {
-                return;
-            } else {
-                match self.source[self.at..].chars().next() {
+        loop {
+            let rest = &self.bytes[self.at..];
+            let ascii = rest.iter().position(|byte| !IN_WORD[usize::from(*byte)]).unwrap_or(rest.len());
+            self.at += ascii;
+            match rest.get(ascii) {
+                Some(byte) if !byte.is_ascii() => match self.source[self.at..].chars().next() {
                     Some(c) if is_xid_continue(c) => self.at += c.len_utf8(),
                     _ => return,
-                }
+                },
+                _ => return,
             }
         }
     }

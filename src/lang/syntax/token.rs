@@ -103,7 +103,9 @@ const fn opened() -> [Option<Keyword>; Kind::Near as usize + 1] {
 
 /// The kind of a word.
 pub(crate) fn kind_of_word(word: &str) -> Kind {
-    if !(2..=9).contains(&word.len()) || !word.as_bytes()[0].is_ascii_lowercase() {
+    let bytes = word.as_bytes();
+    // Reserved words are made of lower-case letters.
+    if !(2..=9).contains(&bytes.len()) || !bytes[0].is_ascii_lowercase() || !bytes[bytes.len() - 1].is_ascii_lowercase() {
         return Kind::Name;
     }
     crate::lang::syntax::keywords::find(word).map_or(Kind::Name, |w| w.kind)

@@ -113,10 +113,13 @@ impl Names {
 fn hash(text: &str) -> u32 {
     const K: u64 = 0x9e37_79b9_7f4a_7c15;
     let mut h = text.len() as u64;
-    for chunk in text.as_bytes().chunks(8) {
-        let mut bytes = [0u8; 8];
-        bytes[..chunk.len()].copy_from_slice(chunk);
-        h = (h.rotate_left(23) ^ u64::from_le_bytes(bytes)).wrapping_mul(K);
+    let (chunks, rest) = text.as_bytes().as_chunks();
+    for chunk in chunks {
+        h = (h.rotate_left(23) ^ u64::from_le_bytes(*chunk)).wrapping_mul(K);
+    }
+    if !rest.is_empty() {
+        let last = rest.iter().rev().fold(0, |word, byte| word << 8 | u64::from(*byte));
+        h = (h.rotate_left(23) ^ last).wrapping_mul(K);
     }
     h ^= h >> 29;
     (h.wrapping_mul(K) >> 32) as u32
