@@ -118,6 +118,7 @@ impl Pipeline for Stages<'_> {
         let modeling = parts.modeling.iter().map(|m| &m.value).collect();
         let surfaces: Vec<_> = parts.surfaces.iter().map(|s| &s.value).collect();
         let inputs = inputs(&curves, modeling, &surfaces, &|origin| cx.name(origin), &tolerance);
+        drop(curves);
         let points: Vec<DVec3> = parts.points.iter().map(|p| p.value).collect();
         if let Some(kept) = self.kept()
             && let Some(before) = kept.networks.get(&module).filter(|before| before.fits(&inputs, &points, &tolerance))

@@ -29,26 +29,21 @@ struct BuiltinCall<'a> {
 impl Cx<'_> {
     /// What a name followed by `(` leads to, looked up once: a function, and whether fields have this name.
     pub(crate) fn word(&mut self, name: Name) -> (Option<&'static Builtin>, bool) {
-        if let Some(Word::Known { function, fields }) = self.machine.words.get(name.index()) {
+        if let Some(Word { function, fields }) = self.machine.words.get(name) {
             return (*function, !fields.is_empty());
         }
         let text = self.program.names.text(name);
         let function = std::builtins().find(|b| b.name == text);
         let fields: Box<[&'static Builtin]> = std::fields().filter(|f| f.name == text).collect();
         let has_fields = !fields.is_empty();
-        if self.machine.words.len() <= name.index() {
-            self.machine.words.resize_with(name.index() + 1, || Word::Unknown);
-        }
-        self.machine.words[name.index()] = Word::Known { function, fields };
+        self.machine.words.insert(name, Word { function, fields });
         (function, has_fields)
     }
 
     /// The field of that name for this kind of value; [`Cx::word`] has looked the name up.
     pub(crate) fn field_for(&self, name: Name, value: &Value) -> Option<&'static Builtin> {
-        match self.machine.words.get(name.index()) {
-            Some(Word::Known { fields, .. }) => fields.iter().copied().find(|f| f.params.first().is_some_and(|p| accepts(p.ty, value))),
-            _ => None,
-        }
+        let Word { fields, .. } = self.machine.words.get(name)?;
+        fields.iter().copied().find(|f| f.params.first().is_some_and(|p| accepts(p.ty, value)))
     }
 
     /// `name(args)` and `of.name(args)`.

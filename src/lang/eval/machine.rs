@@ -76,9 +76,34 @@ pub(crate) struct CallFrame {
 
 /// What `name(` leads to, looked up once per name.
 #[derive(Debug)]
-pub(crate) enum Word {
-    Unknown,
-    Known { function: Option<&'static Builtin>, fields: Box<[&'static Builtin]> },
+pub(crate) struct Word {
+    pub function: Option<&'static Builtin>,
+    pub fields: Box<[&'static Builtin]>,
+}
+
+/// The words looked up so far: of very many names few are called.
+#[derive(Debug, Default)]
+pub(crate) struct Words {
+    /// Of each name its place in the list plus one, or 0.
+    places: Vec<u32>,
+    known: Vec<Word>,
+}
+
+impl Words {
+    /// What a name leads to, when it was looked up.
+    pub(crate) fn get(&self, name: Name) -> Option<&Word> {
+        let place = *self.places.get(name.index())?;
+        self.known.get((place as usize).wrapping_sub(1))
+    }
+
+    /// Keeps what a name leads to.
+    pub(crate) fn insert(&mut self, name: Name, word: Word) {
+        if self.places.len() <= name.index() {
+            self.places.resize(name.index() + 1, 0);
+        }
+        self.known.push(word);
+        self.places[name.index()] = self.known.len() as u32;
+    }
 }
 
 /// State of evaluation.
@@ -90,7 +115,7 @@ pub struct Machine {
     pub(crate) base: usize,
     pub(crate) calls: Vec<CallFrame>,
     pub(crate) running: Vec<(ModuleId, u32)>,
-    pub(crate) words: Vec<Word>,
+    pub(crate) words: Words,
     pub(crate) steps: u64,
     /// What a call may take.
     pub(crate) budget: Budget,
@@ -125,7 +150,7 @@ impl Default for Machine {
             base: 0,
             calls: Vec::new(),
             running: Vec::new(),
-            words: Vec::new(),
+            words: Words::default(),
             steps: 0,
             budget: Budget::new(limits::CALL_WORK),
             room: MemoryBudget::default(),
