@@ -61,6 +61,7 @@ mod random_quads;
 mod random_shells;
 mod repl;
 mod report;
+mod same_shapes;
 mod scatters;
 mod sizing;
 mod skins;

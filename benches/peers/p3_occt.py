@@ -1,7 +1,7 @@
 """usage: p3_occt.py CHORD_ERROR   The face of benches/models/nurbs.loft in OpenCASCADE's incremental mesher, one thread.
 
 Prints the CPU seconds of the mesher alone, the number of triangles, their quality, the largest distance of 20 places of each of at
-most 150 000 triangles from the surface, and the peak memory. Needs `pip install cadquery-ocp numpy`."""
+most 150 000 triangles from the surface, and the peak memory. Needs `pip install cadquery-ocp==7.9.3.1.1 numpy`."""
 import sys
 
 import numpy as np

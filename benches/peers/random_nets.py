@@ -7,7 +7,7 @@ measured at 25 places of each triangle, by Gauss-Newton from their (u, v); `over
 Angles are those of triangles without a corner of the net. With --occt the same faces are meshed by OpenCASCADE's incremental mesher
 beside; with --truth its figures are kept in a file and taken from there the next time. --write writes ten small nets with the
 counts of OpenCASCADE, for `tests/random_nets.rs`. Times are CPU seconds of one thread: ours of the stage, theirs of the mesher
-alone. --draw draws the places of the worst triangles of the five worst meshes. Needs `pip install cadquery-ocp matplotlib numpy scipy`."""
+alone. --draw draws the places of the worst triangles of the five worst meshes. Needs `pip install cadquery-ocp==7.9.3.1.1 matplotlib numpy scipy`."""
 import argparse
 import json
 import pathlib
