@@ -12,6 +12,7 @@ const FORMS: &[(&str, &str)] = &[
     ("NAME = sum([K, 2 * K, K + 1])", "4 * K + 1"),
     ("NAME = Kmm / 1mm", "K"),
     ("NAME = len(\"KxK\") + K", "len(\"KxK\") + K"),
+    ("NAME = \"aKb{base_K}\"", "\"aKb{K + 1}\""),
     ("NAME = max(K, base_K)", "K + 1"),
     ("NAME = if K > 2 then base_K else -K", "if K > 2 then K + 1 else 0 - K"),
     ("NAME = sum([for i in 0..K: i + K])", "K * (K - 1) / 2 + K * K"),

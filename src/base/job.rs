@@ -128,8 +128,8 @@ impl Watched {
     }
 
     /// Work of this thread belongs to the job from now on.
-    pub fn enter(&self) -> Entered {
-        Entered { before: WATCHED.replace(self.clone()) }
+    pub fn enter(self) -> Entered {
+        Entered { before: WATCHED.replace(self) }
     }
 }
 
@@ -226,8 +226,7 @@ impl Job {
     }
 
     fn watch_run<T>(&self, run: Option<Arc<Work>>, work: impl FnOnce() -> T) -> Result<T> {
-        let watched = Watched { job: Some(self.shared.clone()), work: run };
-        let _entered = Entered { before: WATCHED.replace(watched) };
+        let _entered = Watched { job: Some(self.shared.clone()), work: run }.enter();
         match catch_unwind(AssertUnwindSafe(work)) {
             Ok(done) => Ok(done),
             Err(payload) if payload.is::<Cancelled>() => Err(Fault::Interrupted),

@@ -44,7 +44,7 @@ impl Helper {
     }
 
     fn enter(&self) -> HelpingThread {
-        let job = self.watched.enter();
+        let job = self.watched.clone().enter();
         HelpingThread { _budget: work::Charging::to(self.budget.clone()), _job: job }
     }
 }

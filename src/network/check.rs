@@ -9,7 +9,7 @@ impl Network {
             self.check_curve(k, net)?;
         }
         if let Some(k) = self.links.iter().position(|link| link.nodes.0.index().max(link.nodes.1.index()) >= self.nodes.len()) {
-            return Err(format!("link {k} ends in a node that there is not"));
+            return Err(format!("link {k} ends in a node that does not exist"));
         }
         if let Some(k) = self.link_ends().iter().position(Vec::is_empty) {
             return Err(format!("node {k} has no link"));

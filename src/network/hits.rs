@@ -14,7 +14,7 @@ use crate::base::job::Job;
 use crate::base::par;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::curves::curve::Shape;
-use crate::geometry::query::intersect::{Lists, intersect_with};
+use crate::geometry::query::intersect::{SearchBuffers, intersect_with};
 use crate::geometry::{Curve, Hit, self_intersect};
 
 /// One contact of two curves, or of a curve with itself.
@@ -104,7 +104,7 @@ fn of_pairs(curves: &[NetCurve], pairs: &[(u32, u32)], tolerance: &Tolerance, jo
     let chunks = par::try_map(pairs.len().div_ceil(CHUNK), |k| {
         job.go_on()?;
         let chunk = &pairs[k * CHUNK..((k + 1) * CHUNK).min(pairs.len())];
-        let (mut contacts, mut lists) = (Vec::with_capacity(chunk.len()), Lists::default());
+        let (mut contacts, mut buffers) = (Vec::with_capacity(chunk.len()), SearchBuffers::default());
         for &(a, b) in chunk {
             let (a, b) = if curves[a as usize].name <= curves[b as usize].name { (a, b) } else { (b, a) };
             let (first, second) = (&curves[a as usize].curve, &curves[b as usize].curve);
@@ -113,11 +113,11 @@ fn of_pairs(curves: &[NetCurve], pairs: &[(u32, u32)], tolerance: &Tolerance, jo
                 continue;
             }
             if a == b {
-                lists.hits = self_intersect(first, tolerance)?;
+                buffers.hits = self_intersect(first, tolerance)?;
             } else {
-                intersect_with(first, second, tolerance, &mut lists)?;
+                intersect_with(first, second, tolerance, &mut buffers)?;
             }
-            contacts.extend(lists.hits.iter().map(|hit| contact([a, b], [first, second], *hit)));
+            contacts.extend(buffers.hits.iter().map(|hit| contact([a, b], [first, second], *hit)));
         }
         job.advance(chunk.len() as u64);
         Result::Ok(contacts)

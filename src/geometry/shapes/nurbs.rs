@@ -53,6 +53,7 @@ fn de_boor<V: Linear>(d: &mut [V], x: &[f64], t: f64) -> [V; 3] {
     let end = (t - x[p - 1]) * last;
     // Knots do not decrease: where these are equal, so are all on either side of the span.
     let bezier = x[0] == x[p - 1] && x[p] == x[2 * p - 1];
+    // Divided as the others are: `end` may differ in the last bit.
     let even = (t - x[p - 1]) / (x[p] - x[p - 1]);
     for r in 1..p.saturating_sub(1) {
         for j in (r..=p).rev() {

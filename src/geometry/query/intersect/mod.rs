@@ -63,23 +63,23 @@ impl Hit {
 /// end that lies on the other curve within the tolerance is a hit at exactly that end. On a closed curve the first
 /// parameter stands for the last one too. E413 when the work exceeds its limit.
 pub fn intersect(a: &Curve, b: &Curve, tolerance: &Tolerance) -> Result<Vec<Hit>> {
-    let mut lists = Lists::default();
-    intersect_with(a, b, tolerance, &mut lists)?;
-    Ok(lists.hits)
+    let mut buffers = SearchBuffers::default();
+    intersect_with(a, b, tolerance, &mut buffers)?;
+    Ok(buffers.hits)
 }
 
-/// What is found for one pair of curves; the lists serve one pair after the other, so that they are made once.
+/// The lists of a search, kept from pair to pair so that they are allocated once.
 #[derive(Default)]
-pub(crate) struct Lists {
+pub(crate) struct SearchBuffers {
     found: Vec<Found>,
     near: Vec<Rect>,
     /// All meetings, ordered along the first curve.
     pub(crate) hits: Vec<Hit>,
 }
 
-/// The same as [`intersect`], into the hits of lists that were filled before.
-pub(crate) fn intersect_with(a: &Curve, b: &Curve, tolerance: &Tolerance, lists: &mut Lists) -> Result<()> {
-    lists.hits.clear();
+/// As [`intersect`], with the hits in `buffers`, which are emptied first.
+pub(crate) fn intersect_with(a: &Curve, b: &Curve, tolerance: &Tolerance, buffers: &mut SearchBuffers) -> Result<()> {
+    buffers.hits.clear();
     if let (&Shape::Line(a0, a1), &Shape::Line(b0, b1)) = (a.shape(), b.shape()) {
         let apart = segments((a0, a1), (b0, b1)).0;
         if apart > tolerance.point * tolerance.point || apart.is_nan() {
@@ -87,19 +87,19 @@ pub(crate) fn intersect_with(a: &Curve, b: &Curve, tolerance: &Tolerance, lists:
         }
     }
     let (mut own_a, mut own_b) = (None, None);
-    let mut search = Search::new(Side::passing(a, &mut own_a), Side::passing(b, &mut own_b), tolerance.point, lists);
+    let mut search = Search::new(Side::passing(a, &mut own_a), Side::passing(b, &mut own_b), tolerance.point, buffers);
     search.run();
-    finish(&mut search, tolerance, lists)
+    finish(&mut search, tolerance, buffers)
 }
 
 /// Where a curve meets itself, other than the common ends of a closed one.
 pub fn self_intersect(curve: &Curve, tolerance: &Tolerance) -> Result<Vec<Hit>> {
     let side = Side::of(curve);
-    let mut lists = Lists::default();
-    let mut search = Search::new(side, side, tolerance.point, &mut lists);
+    let mut buffers = SearchBuffers::default();
+    let mut search = Search::new(side, side, tolerance.point, &mut buffers);
     search.run_self();
-    finish(&mut search, tolerance, &mut lists)?;
-    let mut hits = lists.hits;
+    finish(&mut search, tolerance, &mut buffers)?;
+    let mut hits = buffers.hits;
     hits.retain(|hit| match hit {
         Hit::Point { ta, tb, .. } => !merge::same_place(curve, *ta, *tb, tolerance.point),
         Hit::Overlap { .. } => true,
@@ -107,15 +107,15 @@ pub fn self_intersect(curve: &Curve, tolerance: &Tolerance) -> Result<Vec<Hit>> 
     Ok(hits)
 }
 
-/// Turns what a search found into hits and gives its lists back.
-fn finish(search: &mut Search, tolerance: &Tolerance, lists: &mut Lists) -> Result<()> {
+/// Turns what a search found into hits and gives its buffers back.
+fn finish(search: &mut Search, tolerance: &Tolerance, buffers: &mut SearchBuffers) -> Result<()> {
     work::spend(search.looked_at as u64 / PER_EVALUATION);
     if let Some(at) = search.exhausted {
         let what = "where two curves meet".to_owned();
         return Err(CurveFault::NotConverged { of: search.a.curve.origin(), what, at }.into());
     }
     let shared = if search.near.is_empty() { Vec::new() } else { contact::resolve(search, tolerance) };
-    merge::hits(search, &shared, tolerance, &mut lists.hits);
-    (lists.found, lists.near) = (std::mem::take(&mut search.found), std::mem::take(&mut search.near));
+    merge::hits(search, &shared, tolerance, &mut buffers.hits);
+    (buffers.found, buffers.near) = (std::mem::take(&mut search.found), std::mem::take(&mut search.near));
     Ok(())
 }

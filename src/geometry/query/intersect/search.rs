@@ -11,7 +11,7 @@ use crate::base::tolerance::{NEWTON_STEP, NUDGE};
 use crate::base::work;
 use crate::geometry::curves::curve::Curve;
 use crate::geometry::curves::pieces::{Node, Pieces, View, children};
-use crate::geometry::query::intersect::Lists;
+use crate::geometry::query::intersect::SearchBuffers;
 use crate::geometry::query::intersect::circles::{common, one_circle};
 use crate::geometry::query::intersect::newton::{Near, approach, foot, segments};
 use crate::geometry::shapes::bounds::Rates;
@@ -84,9 +84,9 @@ pub(crate) struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    /// Nothing is found yet; the lists are those of `lists`, emptied.
-    pub(crate) fn new(a: Side<'a>, b: Side<'a>, point: f64, lists: &mut Lists) -> Self {
-        let (mut found, mut near) = (std::mem::take(&mut lists.found), std::mem::take(&mut lists.near));
+    /// A search that has found nothing yet, with the emptied lists of `buffers`.
+    pub(crate) fn new(a: Side<'a>, b: Side<'a>, point: f64, buffers: &mut SearchBuffers) -> Self {
+        let (mut found, mut near) = (std::mem::take(&mut buffers.found), std::mem::take(&mut buffers.near));
         found.clear();
         near.clear();
         Self { a, b, point, found, near, exhausted: None, looked_at: 0 }
@@ -212,7 +212,7 @@ impl<'a> Search<'a> {
             (true, true, _) | (false, true, false) => {
                 for (t, p) in x.half_ends() {
                     let chords = segments(p, y.p);
-                    if !self.far(chords.0, Node::most_bulge(t, a.rates) + y.bulge) {
+                    if !self.is_too_far(chords.0, Node::most_bulge(t, a.rates) + y.bulge) {
                         self.meet(a, &Node::new(a.view, t, p, a.rates), b, y, chords);
                     }
                 }
@@ -220,7 +220,7 @@ impl<'a> Search<'a> {
             (_, _, true) => {
                 for (t, p) in y.half_ends() {
                     let chords = segments(x.p, p);
-                    if !self.far(chords.0, x.bulge + Node::most_bulge(t, b.rates)) {
+                    if !self.is_too_far(chords.0, x.bulge + Node::most_bulge(t, b.rates)) {
                         self.meet(a, x, b, &Node::new(b.view, t, p, b.rates), chords);
                     }
                 }
@@ -229,8 +229,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Whether two parts with at most these bulges cannot meet: then the half is not looked into, and costs what looking would.
-    fn far(&mut self, apart: f64, bulges: f64) -> bool {
+    /// Whether two parts with at most these bulges cannot meet: then the half is not evaluated, and is charged as if it were.
+    fn is_too_far(&mut self, apart: f64, bulges: f64) -> bool {
         let reach = bulges + self.point;
         let far = apart > reach * reach;
         if far {
