@@ -65,6 +65,7 @@ mod same_shapes;
 mod scatters;
 mod sizing;
 mod skins;
+mod sliding_nodes;
 mod spec;
 mod splits;
 mod step;

@@ -287,6 +287,7 @@ fn triangulated(bytes: &[u8]) -> bool {
         settings: CARE,
         most: 20_000,
         limit_check: None,
+        sliding: None,
     };
     // Too much work is an answer, too.
     match Budget::new(WORK).within(|| triangulate(&task, &Job::new()).unwrap()) {

@@ -196,6 +196,7 @@ mod plate {
                 settings,
                 most: 100_000,
                 limit_check: None,
+                sliding: None,
             };
             let triangulation = triangulate(&task, &Job::new()).unwrap().unwrap().triangulation;
             figures(&triangulation.p, triangulation.tri.iter().copied())

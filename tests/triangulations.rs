@@ -144,6 +144,7 @@ fn plate(surface: &dyn ParametricSurface, random: &mut Random) -> Triangulation 
         settings: CARE,
         most: 10_000,
         limit_check: None,
+        sliding: None,
     };
     initial_triangulation(&task, &Job::new()).unwrap().unwrap()
 }

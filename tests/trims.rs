@@ -76,6 +76,7 @@ fn spiked_loops_make_sound_faces_or_say_why() {
             settings: CARE,
             most: 100_000,
             limit_check: None,
+            sliding: None,
         };
         match triangulate(&task, &Job::new()).unwrap() {
             Ok(made) => sound(&made.triangulation, &outline, None),
@@ -110,6 +111,7 @@ fn holes_of_any_size_are_kept() {
             settings: CARE,
             most: 100_000,
             limit_check: None,
+            sliding: None,
         };
         let triangulation = triangulate(&task, &Job::new()).unwrap().map_err(|t| TestCaseError::fail(format!("{t:?}")))?.triangulation;
         sound(&triangulation, &outline, Some(holes.len()))
@@ -149,6 +151,7 @@ fn a_plate_with_holes_is_better_than_frontal_meshers() {
         settings,
         most: 100_000,
         limit_check: None,
+        sliding: None,
     };
     let triangulation = triangulate(&task, &Job::new()).unwrap().unwrap().triangulation;
     sound(&triangulation, &outline, Some(20)).unwrap();

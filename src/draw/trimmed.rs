@@ -87,6 +87,7 @@ fn filled(surface: &Surface, mut outline: Outline, places: &[(f64, f64)], fine: 
         settings,
         most: MOST * MOST,
         limit_check: None,
+        sliding: None,
     };
     match triangulate(&task, &Job::new()) {
         Ok(Ok(made)) => {

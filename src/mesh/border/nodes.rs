@@ -60,6 +60,18 @@ impl Nodes {
         self.counts[segment]
     }
 
+    /// The segment that a node is inside, with its place along it; none of a junction or a point.
+    pub fn on_segment(&self, node: u32) -> Option<(usize, usize)> {
+        let segment = self.first.partition_point(|first| *first <= node).checked_sub(1)?;
+        let place = (node - self.first[segment]) as usize + 1;
+        (place < self.counts[segment] as usize).then_some((segment, place))
+    }
+
+    /// Moves a node inside a segment to another fraction of its length.
+    pub fn slide(&mut self, segment: usize, place: usize, fraction: f64) {
+        self.fractions[segment][place] = fraction;
+    }
+
     /// First inner node of a segment.
     pub fn first_inner(&self, segment: usize) -> u32 {
         self.first[segment]

@@ -11,10 +11,11 @@ use crate::mesh::chart::face_border::FaceBorder;
 use crate::mesh::chart::face_input::FaceInput;
 use crate::mesh::chart::outline::Outline;
 use crate::mesh::data::face_geometry::Free;
-use crate::mesh::data::face_mesh::FreeInside;
+use crate::mesh::data::face_mesh::{FreeInside, SlidNode};
 use crate::mesh::request::decider::{Decided, Decider, Tally, Why};
 use crate::mesh::request::limits::Limits;
 use crate::mesh::request::sources::{Body, Source, Sources};
+use crate::mesh::tri::sliding_border::SlidingBorder;
 
 /// The mesh inside a border.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,9 +24,10 @@ pub struct CachedFace {
     points: Vec<DVec3>,
     decided: Decided,
     tally: Option<Tally>,
+    slid: Vec<SlidNode>,
 }
 
-crate::plain!(CachedFace { free, points, decided, tally });
+crate::plain!(CachedFace { free, points, decided, tally, slid });
 crate::plain!(Decided { deciders, of, lengths });
 crate::plain!(Decider { why, nodes, at });
 crate::plain!(Tally { whole, crossed, corners, agree });
@@ -79,12 +81,14 @@ pub(crate) struct FaceKey<'a> {
     pub(crate) odd: &'a [u32],
     /// The sources of `near` and `in` that reach the face.
     pub(crate) rules: &'a Sources,
+    /// Border nodes that may slide.
+    pub(crate) sliding: Option<&'a SlidingBorder<'a>>,
 }
 
 impl FaceKey<'_> {
     /// Its digest, by content.
     pub(crate) fn digest(&self, cache: &CacheView) -> Digest {
-        let Self { face_input, face, border, outline, odd, rules } = self;
+        let Self { face_input, face, border, outline, odd, rules, sliding } = self;
         let plan = face_input.input.plan;
         let mut to = cache.on("free face", face.surface).text(env!("CARGO_PKG_VERSION")).number(u64::from(crate::mesh::request::VERSION));
         face_input.input.tolerance.hash_into(&mut to);
@@ -101,6 +105,9 @@ impl FaceKey<'_> {
         border.ids.iter().map(first).collect::<Vec<_>>().hash_into(&mut to);
         border.ids.iter().map(|id| odd.binary_search(id).is_ok()).collect::<Vec<_>>().hash_into(&mut to);
         (&border.uv, &outline.p, (&border.edges, &border.lines)).hash_into(&mut to);
+        if let Some(sliding) = sliding {
+            sliding.hash_into(&mut to);
+        }
         to.finish()
     }
 }
@@ -114,12 +121,24 @@ impl CachedFace {
             inside.decided.of.len(),
             inside.points.len()
         );
-        Self { free: free.clone(), points: inside.points.clone(), decided: inside.decided.clone(), tally: inside.tally }
+        Self {
+            free: free.clone(),
+            points: inside.points.clone(),
+            decided: inside.decided.clone(),
+            tally: inside.tally,
+            slid: inside.slid.clone(),
+        }
     }
 
     /// Its places and elements and its inside, for a border with these edges; `None` where it is of a border with another number of nodes.
     pub fn parts(&self, border: usize, loops: &[[u32; 2]]) -> Option<(Free, FreeInside)> {
-        let inside = || FreeInside { points: self.points.clone(), loops: loops.to_vec(), decided: self.decided.clone(), tally: self.tally };
+        let inside = || FreeInside {
+            points: self.points.clone(),
+            loops: loops.to_vec(),
+            decided: self.decided.clone(),
+            tally: self.tally,
+            slid: self.slid.clone(),
+        };
         (self.free.border == border).then(|| (self.free.clone(), inside()))
     }
 
@@ -136,6 +155,7 @@ impl CachedFace {
         let sound = face.free.border + face.points.len() == nodes
             && face.free.triangles.iter().flatten().all(known)
             && face.free.quads.iter().flatten().all(known)
+            && face.slid.iter().all(|slid| (slid.node as usize) < face.free.border)
             && face.decided.is_sound(face.points.len());
         sound.then_some(face)
     }

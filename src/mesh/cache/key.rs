@@ -116,10 +116,12 @@ impl PlanHasher<'_> {
     }
 
     fn layout(&self, layout: &Layout, to: &mut StableHasher) {
-        // The faces determine which edges its tracks are.
-        let Layout { faces, parts, pieces, edges: _, of_link, curves, points, creases, meets, lost } = layout;
+        let Layout { faces, parts, pieces, edges, of_link, curves, points, creases, meets, lost } = layout;
         faces.len().hash_into(to);
         faces.iter().for_each(|face| self.face(face, to));
+        // The faces determine which edges its tracks are; patches that are not meshed use them too, and then nodes do not slide.
+        let users: Vec<usize> = edges.iter().map(|edge| self.input.model.edges[edge.index()].users.len()).collect();
+        users.hash_into(to);
         (parts, pieces, (curves, points, (creases, meets, lost))).hash_into(to);
         of_link.len().hash_into(to);
         for (link, uses) in of_link {

@@ -24,6 +24,8 @@ pub struct FaceInput<'a> {
     pub points: &'a [DVec3],
     /// Sizes requested by `near`, `in` and `min_size`.
     pub wanted: &'a SizeRequests,
+    /// Segments whose nodes may slide.
+    pub sliding: &'a [bool],
 }
 
 /// The border of a face, its chart, and the border in it; `None` where the surface is singular all along it.

@@ -47,7 +47,20 @@ pub struct FreeInside {
     pub decided: Decided,
     /// Its cells between lines of constant u and v, where it was made of these.
     pub tally: Option<Tally>,
+    /// Nodes of its border that slid along it.
+    pub slid: Vec<SlidNode>,
 }
+
+/// A border node that slid along its segment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SlidNode {
+    /// Its place in the list of (u, v).
+    pub node: u32,
+    /// Its fraction of the length of the segment now.
+    pub fraction: f64,
+}
+
+crate::plain!(SlidNode { node, fraction });
 
 /// The triangles and quads of one face among those of its mesh.
 pub type FaceRanges = (Range<usize>, Range<usize>);

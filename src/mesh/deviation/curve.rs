@@ -110,6 +110,11 @@ pub fn more_steps(
     Ok((n > count).then_some(n))
 }
 
+/// Whether one of `count` steps along a segment keeps the limits, given the fractions of its ends.
+pub fn step_keeps(layout: &Layout, segment: usize, ends: (f64, f64), count: u32, limits: &Limits) -> Result<bool> {
+    Ok(LimitedSegment { layout, segment, limits }.step_ratio(ends, count as usize)?.is_none())
+}
+
 impl StepRatio {
     /// Steps in place of one that would keep the limits.
     fn steps(&self) -> f64 {
@@ -201,12 +206,17 @@ impl LimitedSegment<'_> {
 
     /// How far a step is over its limits; `None` where it keeps them.
     fn ratio(&self, fractions: &[f64], k: usize) -> Result<Option<StepRatio>> {
+        self.step_ratio((fractions[k], fractions[k + 1]), fractions.len() - 1)
+    }
+
+    /// The same of a step between two fractions, one of `steps`.
+    fn step_ratio(&self, ends: (f64, f64), steps: usize) -> Result<Option<StepRatio>> {
         work::spend(SETTINGS.work);
         let (limits, segment) = (self.limits, &self.layout.pieces.segments[self.segment]);
         let track = &self.layout.parts[segment.track].track;
         let length = segment.s.1 - segment.s.0;
-        let (a, b) = (segment.s.0 + length * fractions[k], segment.s.0 + length * fractions[k + 1]);
-        let steps = (fractions.len() - 1) as f64;
+        let (a, b) = (segment.s.0 + length * ends.0, segment.s.0 + length * ends.1);
+        let steps = steps as f64;
         // A bound that keeps the limit need not be closer.
         let most = StepAllowance {
             chord: limits.chord.map_or(f64::INFINITY, |limit| limit * (1.0 + limits.chord_room(length))),

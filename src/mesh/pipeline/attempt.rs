@@ -2,11 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use glam::DVec3;
+
 use crate::base::digest::Digest;
 use crate::base::fault::Result;
 use crate::base::job::Job;
 use crate::base::par;
-use crate::mesh::border::layout::{Face, Layout, Uneven, closes};
+use crate::mesh::border::layout::{Face, Layout, closes};
 use crate::mesh::border::nodes::Nodes;
 use crate::mesh::cache::reuse::{CacheView, KeyedFaces, recall_face, recall_steps, recalled};
 use crate::mesh::chart::face_input::FaceInput;
@@ -19,7 +21,8 @@ use crate::mesh::divide::too_large::refuse_counts;
 use crate::mesh::divide::verdict::{self, Finished, Verdict};
 use crate::mesh::face::coincident::{self, Demand};
 use crate::mesh::face::{map_quality, twins};
-use crate::mesh::pipeline::fill::{Refill, diagonal_rule, fill, free, number, prepare};
+use crate::mesh::pipeline::fill::{Refill, diagonal_rule, fill, free, number, prepare, slide};
+use crate::mesh::pipeline::retry::Retry;
 use crate::mesh::report::blame;
 use crate::mesh::report::explain::Explanation;
 use crate::mesh::request::input::Input;
@@ -67,28 +70,6 @@ pub(crate) struct FinishedMesh {
     pub sizing: Sizing,
     pub mesh: Mesh,
     pub explanation: Explanation,
-}
-
-/// Why a mesh is divided anew.
-enum Retry {
-    /// Mapped faces have pieces of border as short as a row would be, or lie beside free faces with such: they become free.
-    UnevenBorders(Vec<(usize, Uneven)>),
-    /// Borders of free faces come nearer to each other than their steps: these become shorter there.
-    NearBorders(Vec<Narrow>),
-    /// Faces whose maps are predicted to be worse than free meshes: with the reason and the predicted number of elements.
-    BetterFree(Vec<(usize, Uneven, u64)>),
-    /// Free faces that turned out worse than their maps.
-    BetterMapped(Vec<usize>),
-    /// Steps of segments break a limit that fewer keep: these are the next counts that do.
-    BrokenSteps(Vec<(usize, u32)>),
-    /// A face breaks a limit: its rows demand more steps.
-    BrokenLimits,
-    /// Uneven rows of faces lean, or limits demand more of them than of even ones: these become even.
-    UnfitRows(Vec<usize>),
-    /// Faces have elements or edges between the same nodes.
-    Coincident(Demand),
-    /// Elements of a face from one of its sides to another are the same ones: the steps of its border are halved.
-    ClosesOnItself(usize),
 }
 
 /// How a round ends.
@@ -206,12 +187,12 @@ impl Attempt<'_> {
         if !crowded.is_empty() {
             return Ok(RoundResult::Again(Retry::UnevenBorders(crowded), counts));
         }
-        let DividedSegments { counts, strip, nodes, is_settled } = self.divide(counts, strip)?;
+        let DividedSegments { counts, strip, mut nodes, is_settled } = self.divide(counts, strip)?;
         if let Some(retry) = self.unfit_borders(&counts, &nodes)? {
             return Ok(RoundResult::Again(retry, counts));
         }
-        let border = nodes.points(self.layout, &input.plan.points);
-        let face_input = FaceInput { input, layout: &*self.layout, nodes: &nodes, points: &border, wanted: &self.sizing.wanted };
+        let mut border = nodes.points(self.layout, &input.plan.points);
+        let face_input = self::face_input(input, self.layout, &nodes, &border, &self.sizing);
         // Shorter steps that leave all counts unchanged have no further effect.
         if self.searches > 0 && counts != self.shortened {
             self.searches -= 1;
@@ -241,6 +222,8 @@ impl Attempt<'_> {
         turned::refuse_turned(input, &prepared, &mesh, &recall_face(keyed, "turned", |reuse| &reuse.turned))?;
         if self.layout.faces.iter().any(|face| face.free) {
             free(&face_input, &mut prepared, cache, job)?;
+            slide(self.layout, &mut nodes, &mut border, &prepared);
+            let face_input = self::face_input(input, self.layout, &nodes, &border, &self.sizing);
             mesh = fill(input, &border, &prepared, keyed, Refill::Again, job)?;
             let back = map_quality::better_mapped(&face_input, &prepared, &mesh);
             if !back.is_empty() {
@@ -252,6 +235,7 @@ impl Attempt<'_> {
             }
             turned::refuse_concave(input, &prepared, &mesh)?;
         }
+        let face_input = self::face_input(input, self.layout, &nodes, &border, &self.sizing);
         let coincidences = coincident::resolve(&face_input, &prepared, &mut mesh, &self.limits);
         if let Some(first) = coincidences.first() {
             return match coincident::demand(self.layout, &prepared, &coincidences, &mut self.demands_on) {
@@ -262,13 +246,11 @@ impl Attempt<'_> {
         if let Some(face) = self.closing_on_itself(&face_input, &prepared, &mesh)? {
             return Ok(RoundResult::Again(Retry::ClosesOnItself(face), counts));
         }
-        self.layout.faces.iter_mut().zip(&predicted).for_each(|(face, found)| face.foreseen = found.map(|found| found.angle));
-        let face_input = FaceInput { input, layout: &*self.layout, nodes: &nodes, points: &border, wanted: &self.sizing.wanted };
         face_mesh::measure_quality(&mut prepared, &mesh);
         let blames = blame::of_faces(&face_input, &self.sizing, &predicted, &prepared, &mesh);
-        let sharp: Vec<Remark> = blames.iter().filter_map(|seen| seen.sharp.clone()).collect();
+        self.layout.faces.iter_mut().zip(&predicted).for_each(|(face, found)| face.foreseen = found.map(|found| found.angle));
         let mut sizing = std::mem::take(&mut self.sizing);
-        sizing.sharp = sharp.into_iter().reduce(Remark::sharper);
+        sizing.sharp = blames.iter().filter_map(|seen| seen.sharp.clone()).reduce(Remark::sharper);
         sizing.mark_used(&counts);
         sizing.effects.mark_inside(input, &prepared);
         let mut explanation = Explanation::new(input, self.layout, &sizing, &prepared, &counts, &strip);
@@ -347,6 +329,11 @@ impl Attempt<'_> {
         (self.first, self.checked, self.shortened) = (Vec::new(), Vec::new(), Vec::new());
         Ok(())
     }
+}
+
+/// What faces are made from, with these nodes on their borders.
+fn face_input<'a>(input: &'a Input, layout: &'a Layout, nodes: &'a Nodes, points: &'a [DVec3], sizing: &'a Sizing) -> FaceInput<'a> {
+    FaceInput { input, layout, nodes, points, wanted: &sizing.wanted, sliding: sizing.sliding.each() }
 }
 
 /// Sizes of all segments, demands of rows, and the equations between counts.

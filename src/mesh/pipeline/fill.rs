@@ -6,10 +6,12 @@ use crate::base::digest::Digest;
 use crate::base::fault::Result;
 use crate::base::job::Job;
 use crate::base::{par, work};
+use crate::mesh::border::layout::Layout;
+use crate::mesh::border::nodes::Nodes;
 use crate::mesh::cache::reuse::{CacheView, Inside, KeyedFaces};
 use crate::mesh::chart::face_input::{FaceInput, empty};
 use crate::mesh::data::face_geometry::FaceNodes;
-use crate::mesh::data::face_mesh::FaceMesh;
+use crate::mesh::data::face_mesh::{FaceMesh, SlidNode};
 use crate::mesh::data::mesh::Mesh;
 use crate::mesh::divide::relations::Relations;
 use crate::mesh::face::mapped::{self, refuse_triangles};
@@ -65,6 +67,20 @@ pub(crate) fn free(face_input: &FaceInput, prepared: &mut [FaceMesh], cache: Opt
     }
     number(face_input, prepared);
     Ok(())
+}
+
+/// Moves the border nodes that slid while their faces were made.
+pub(crate) fn slide(layout: &Layout, nodes: &mut Nodes, border: &mut [DVec3], prepared: &[FaceMesh]) {
+    for face_mesh in prepared {
+        let (FaceNodes::Free(_, ids), Some(inside)) = (&face_mesh.geometry.nodes, &face_mesh.inside) else { continue };
+        for SlidNode { node, fraction } in &inside.slid {
+            let id = ids[*node as usize];
+            if let Some((segment, place)) = nodes.on_segment(id) {
+                nodes.slide(segment, place, *fraction);
+                border[id as usize] = layout.point(segment, *fraction);
+            }
+        }
+    }
 }
 
 /// Ids of the inner nodes, face by face.

@@ -14,6 +14,7 @@ use crate::mesh::data::face_mesh::FaceMesh;
 use crate::mesh::face::free::filled;
 use crate::mesh::request::work::{too_much_work, work_on};
 use crate::mesh::tri::no_mesh::no_area;
+use crate::mesh::tri::sliding_border::SlidingBorder;
 use crate::mesh::tri::triangle_fit::near;
 
 /// Computes the face, or takes it from the cache.
@@ -22,17 +23,22 @@ pub fn prepare(face_input: &FaceInput, face: &Face, cache: Option<&CacheView>, j
     if face.halved > 0 && face.is_grown() {
         rings::add_rings(face_input, face, &border, &chart, &mut outline);
     }
+    let sliding = SlidingBorder::new(face_input, face, &chart, &border);
+    let sliding = sliding.as_ref();
     let key = cache.map(|cache| {
         let odd = if face.takes_quads() { odd(face_input, face) } else { Vec::new() };
         let rules = near(face_input, face, &outline);
-        (cache, cached_face::FaceKey { face_input, face, border: &border, outline: &outline, odd: &odd, rules: &rules }.digest(cache))
+        (
+            cache,
+            cached_face::FaceKey { face_input, face, border: &border, outline: &outline, odd: &odd, rules: &rules, sliding }.digest(cache),
+        )
     });
     if let Some((cache, key)) = key
         && let Some((free, inside)) = cache.free(key).and_then(|cached| cached.parts(border.uv.len(), &border.edges))
     {
         return Ok(prepared(face_input, face, free, border.ids, inside));
     }
-    let all = || filled(face_input, face, border, &chart, &outline, job);
+    let all = || filled(face_input, face, border, &chart, &outline, sliding, job);
     let surface = &face_input.input.model.surfaces[face.surface.index()].surface;
     // A face that is tried again with shorter steps of its border, because nothing kept its limits, gets a smaller budget.
     let halvings = if face.method.is_coarse() { face.halved.min(MAX_BUDGET_HALVINGS) } else { 0 };

@@ -5,3 +5,4 @@ pub mod attempt;
 pub mod build;
 pub mod fill;
 pub mod free_face;
+pub mod retry;

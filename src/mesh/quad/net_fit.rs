@@ -134,6 +134,7 @@ impl NetFit<'_> {
             lattice,
             most,
             limit_check: None,
+            sliding: None,
         };
         let triangulation = match initial_triangulation(&task, job)? {
             Ok(triangulation) => triangulation,

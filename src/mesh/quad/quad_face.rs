@@ -62,7 +62,7 @@ pub(crate) fn prepare(
         face,
         free,
         border.ids,
-        FreeInside { points, loops: border.edges, decided: decided.without(fixed), tally: None },
+        FreeInside { points, loops: border.edges, decided: decided.without(fixed), tally: None, slid: Vec::new() },
     ))
 }
 
@@ -93,7 +93,7 @@ fn fitted_net(face_input: &FaceInput, face: &Face, chart: &Chart, outline: &Outl
     let settings = OptimizeSettings { smoothing_rounds, max_length_ratio: LONGEST / spacing, ..QUAD_FACE };
     let rules = near(face_input, face, outline);
     let longest = Longest::new(face.size.0, outline, &rules).graded(outline, face_input.input.plan.slope());
-    let fit = FaceFit { face_input, face, surface, chart, outline, limits, longest, settings, interpolated: None };
+    let fit = FaceFit { face_input, face, surface, chart, outline, limits, longest, settings, interpolated: None, sliding: None };
     let background = bent.then(|| fit.background_of_squares());
     let slope = rules.slope() / spacing;
     let sources = Sources::new([rules.items(), &fit.short_edges(background.as_ref(), spacing)].concat(), slope);

@@ -17,6 +17,7 @@ pub mod rule_effects;
 pub mod rule_lines;
 pub mod segment_rules;
 pub mod sizing;
+pub mod sliding_segments;
 pub mod spacing_sampler;
 pub mod spacing_solver;
 pub mod too_large;

@@ -21,6 +21,7 @@ use crate::mesh::size::remark::Remark;
 use crate::mesh::size::row_spacing::UnevenRows;
 use crate::mesh::size::rule_effects::RuleEffects;
 use crate::mesh::size::segment_rules::{SegmentRules, SegmentSettings};
+use crate::mesh::size::sliding_segments::SlidingSegments;
 use crate::mesh::size::spacing_solver::{SpacingInput, spacings};
 use crate::mesh::size::{gaps, too_large};
 
@@ -66,6 +67,8 @@ pub struct Sizing {
     pub rows: UnevenRows,
     /// Steps without a bias may vary: a bias of 1 keeps them even.
     pub may_vary: bool,
+    /// Segments whose nodes may slide.
+    pub sliding: SlidingSegments,
     /// The bias rule of each segment.
     pub bias_rule: Vec<Option<usize>>,
     /// Sizes requested by `near`, `in` and `min_size`.
@@ -96,6 +99,7 @@ impl Sizing {
         let mut sizing = Self { effects, wanted, ..Self::default() };
         sizing.decide(input, layout, &settings, recall, narrow)?;
         sizing.bias_rule = settings.iter().map(|s| s.bias_rule).collect();
+        sizing.sliding = SlidingSegments::new(input, layout, &sizing);
         too_large::refuse_steps(input, layout, &sizing)?;
         Ok(sizing)
     }
@@ -233,7 +237,7 @@ impl Sizing {
             }
             if let Some(rule) = self.bias_rule[k]
                 && counts[k] > 1
-                && (d.bias != 1.0 || self.may_vary)
+                && (d.bias != 1.0 || self.may_vary || self.sliding.is_held_by_bias(k))
             {
                 self.effects.mark_used(rule);
             }

@@ -15,6 +15,7 @@ use crate::mesh::tri::optimize::{LimitCheck, MeshOptimizer, OptimizeSettings};
 use crate::mesh::tri::optimize_settings::REPAIR;
 use crate::mesh::tri::placement_settings::ESTIMATE;
 use crate::mesh::tri::quadtree::{self, TreeFace};
+use crate::mesh::tri::sliding_border::SlidingBorder;
 use crate::mesh::tri::triangulation::Triangulation;
 
 /// Where inner nodes come from.
@@ -47,6 +48,8 @@ pub struct Task<'a> {
     pub most: usize,
     /// Limits: triangles over one are divided.
     pub limit_check: Option<&'a dyn LimitCheck>,
+    /// Border nodes that may slide.
+    pub sliding: Option<&'a SlidingBorder<'a>>,
 }
 
 /// The triangles of a face.
@@ -69,6 +72,9 @@ pub fn triangulate(task: &Task, job: &Job) -> Outcome<Triangulated> {
         Err(reason) => return Ok(Err(reason)),
     };
     let mut optimizer = MeshOptimizer::new(triangulation, chart_surface, task.field, task.settings);
+    if let Some(border) = task.sliding {
+        optimizer.slide_on(border);
+    }
     optimizer.settle();
     job.go_on()?;
     if let Some(limit_check) = task.limit_check {

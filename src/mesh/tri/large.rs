@@ -68,6 +68,7 @@ impl FaceFit<'_> {
             lattice,
             most: self.most(),
             limit_check: None,
+            sliding: None,
         };
         expected_nodes(fields.map(task).each_ref()).map_or([0.0; N], |nodes| nodes.map(|n| 2.0 * n))
     }

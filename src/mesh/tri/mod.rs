@@ -22,6 +22,7 @@ pub mod placement_settings;
 pub mod point_hash;
 pub mod quadtree;
 pub mod shape;
+pub mod sliding_border;
 pub mod too_large;
 pub mod tree;
 pub mod triangle_fit;

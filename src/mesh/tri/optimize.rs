@@ -8,6 +8,7 @@ pub mod failed_repairs;
 pub mod flips;
 pub mod local_search;
 pub mod repair;
+pub(crate) mod slide;
 pub mod smooth;
 pub mod upright;
 
@@ -21,6 +22,7 @@ use crate::mesh::tri::optimize::failed_repairs::FailedRepairs;
 use crate::mesh::tri::optimize_settings::{DIVISION, REPAIR};
 use crate::mesh::tri::pending::Pending;
 use crate::mesh::tri::shape::{PatchRim, Star};
+use crate::mesh::tri::sliding_border::SlidingBorder;
 use crate::mesh::tri::triangulation::{Patch, Ring, Triangulation};
 
 /// Settings of the optimization of one face.
@@ -99,6 +101,10 @@ pub struct MeshOptimizer<'a> {
     pub settings: OptimizeSettings,
     /// The limits of repaired triangles.
     pub limit_check: Option<&'a dyn LimitCheck>,
+    /// Border nodes that may slide.
+    sliding: Option<&'a SlidingBorder<'a>>,
+    /// Whether they do: once nothing else makes the worst triangles better.
+    may_slide: bool,
     /// Work below which triangles are improved no further, so that the face is made.
     reserved_work: u64,
     ring: Ring,
@@ -136,6 +142,8 @@ impl<'a> MeshOptimizer<'a> {
             field,
             settings,
             limit_check: None,
+            sliding: None,
+            may_slide: false,
             reserved_work: 0,
             ring: Ring::default(),
             rim: PatchRim::default(),
@@ -176,6 +184,17 @@ impl<'a> MeshOptimizer<'a> {
             self.triangulation.p[n] = p;
         }
         largest
+    }
+
+    /// Goes back to triangles from before; all of them count as changed.
+    fn go_back(&mut self, triangulation: Triangulation) {
+        let nodes = triangulation.p.len();
+        self.triangulation = triangulation;
+        self.size_factor.resize(nodes, 1.0);
+        for pending in [&mut self.active, &mut self.moved, &mut self.changed, &mut self.unseen] {
+            *pending = Pending::all(nodes);
+        }
+        (self.failed_repairs, self.failed_searches) = (FailedRepairs::default(), FailedRepairs::default());
     }
 
     /// The first flips and rounds of smoothing: from here on nodes hardly move.

@@ -122,6 +122,18 @@ pub(crate) struct LocalSearchSettings {
 pub(crate) const LOCAL_SEARCH: LocalSearchSettings =
     LocalSearchSettings { max_sweeps: 10, trial_sweeps: 3, max_trial_ratio: 3.0, sweep_share: 0.4, max_penalty_ratio: 0.9 };
 
+/// Search for the best place of a border node that slides (`optimize/slide.rs`).
+pub(crate) struct SlideSettings {
+    /// Quality below which nodes slide for a triangle: holes keep even steps where nothing is wrong.
+    pub(crate) min_quality: f64,
+    /// Share of a range that is kept at each step of a golden section.
+    pub(crate) section: f64,
+    /// Number of sections: these leave 1.3 % of the whole range.
+    pub(crate) sections: usize,
+}
+
+pub(crate) const SLIDE: SlideSettings = SlideSettings { min_quality: 0.9, section: 0.618, sections: 9 };
+
 /// Division of triangles that exceed a limit (`optimize/divide.rs`).
 pub(crate) struct DivisionSettings {
     /// Largest number of rounds.

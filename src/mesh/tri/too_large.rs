@@ -27,7 +27,7 @@ pub fn refuse_large(input: &Input, layout: &Layout, sizing: &Sizing, job: &Job) 
             let counts: Vec<u32> = sizing.decisions.iter().map(|d| d.count.map_or(d.demand, |c| c.0).min(coarse)).collect();
             let nodes = Nodes::new(layout, &counts, |segment, count| sizing.fractions(segment, count));
             let points = nodes.points(layout, &input.plan.points);
-            let face_input = FaceInput { input, layout, nodes: &nodes, points: &points, wanted: &sizing.wanted };
+            let face_input = FaceInput { input, layout, nodes: &nodes, points: &points, wanted: &sizing.wanted, sliding: &[] };
             let Some([elements, by_size]) = elements_ahead(&face_input, face) else { continue };
             if elements > most {
                 let refines = input.plan.refines.iter().map(|r| r.size).min_by(|a, b| a.0.total_cmp(&b.0));

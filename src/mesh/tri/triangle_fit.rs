@@ -33,6 +33,7 @@ use crate::mesh::tri::longest::{Longest, longest_side};
 use crate::mesh::tri::no_mesh::{NoMesh, Outcome};
 use crate::mesh::tri::optimize::{LimitCheck, OptimizeSettings};
 use crate::mesh::tri::optimize_settings::{BENT_FACE, EVEN_FACE, FIT, GRADED_FACE, TREE_FACE};
+use crate::mesh::tri::sliding_border::SlidingBorder;
 use crate::mesh::tri::triangulation::Triangulation;
 use crate::surface::Surface;
 
@@ -56,6 +57,8 @@ pub(crate) struct FaceFit<'a> {
     pub(crate) settings: OptimizeSettings,
     /// The chart interpolated, where that is quicker and no limit is bounded on it.
     pub(crate) interpolated: Option<InterpolatedChart<'a>>,
+    /// Border nodes that may slide.
+    pub(crate) sliding: Option<&'a SlidingBorder<'a>>,
 }
 
 /// The triangles of a face that keep its limits.
@@ -68,7 +71,14 @@ pub(crate) struct FittedFace {
 }
 
 /// Triangles that keep the limits.
-pub(crate) fn fitted(face_input: &FaceInput, face: &Face, chart: &Chart, outline: &Outline, job: &Job) -> Outcome<FittedFace> {
+pub(crate) fn fitted(
+    face_input: &FaceInput,
+    face: &Face,
+    chart: &Chart,
+    outline: &Outline,
+    sliding: Option<&SlidingBorder>,
+    job: &Job,
+) -> Outcome<FittedFace> {
     let surface = &face_input.input.model.surfaces[face.surface.index()].surface;
     let limits = Limits::of(face_input.input);
     let bent = !surface.is_flat() && (limits.chord.is_some() || limits.angle.is_some());
@@ -86,7 +96,7 @@ pub(crate) fn fitted(face_input: &FaceInput, face: &Face, chart: &Chart, outline
     });
     let rules = near(face_input, face, outline);
     let longest = Longest::new(face.size.0, outline, &rules).graded(outline, face_input.input.plan.slope());
-    let mut fit = FaceFit { face_input, face, surface, chart, outline, limits, longest, settings, interpolated: None };
+    let mut fit = FaceFit { face_input, face, surface, chart, outline, limits, longest, settings, interpolated: None, sliding };
     if face.method.is_coarse() {
         let mut outcome = fit.between_isolines(&rules, job)?;
         match (face.method, &mut outcome) {
@@ -152,6 +162,7 @@ pub(crate) fn elements_ahead(face_input: &FaceInput, face: &Face) -> Option<[f64
         lattice,
         most: face_input.input.plan.most_nodes(),
         limit_check: None,
+        sliding: None,
     };
     let nodes = expected_nodes(fields.map(task).each_ref())?;
     Some(nodes.map(|nodes| if quads { nodes } else { 2.0 * nodes }))
@@ -275,6 +286,7 @@ impl FaceFit<'_> {
             lattice,
             most: self.most(),
             limit_check: Some(limit_check),
+            sliding: self.sliding,
         }
     }
 

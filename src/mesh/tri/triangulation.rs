@@ -14,7 +14,7 @@ use crate::base::triangulate_points::{NO_TRIANGLE, Triangles};
 use crate::mesh::chart::outline::area2;
 use crate::mesh::tri::shape::quality;
 
-/// A triangulation on a surface: border nodes first, which never move, then inner ones.
+/// A triangulation on a surface: border nodes first, which keep their place or slide along the border, then inner ones.
 #[derive(Clone, Debug, Default)]
 pub struct Triangulation {
     /// Points.
@@ -25,6 +25,8 @@ pub struct Triangulation {
     pub size: Vec<f64>,
     /// Number of border nodes.
     pub fixed: u32,
+    /// Where border nodes that slide are along their segments, as fractions of the length; empty where none does.
+    pub along: Vec<f64>,
     /// Corners, counter-clockwise in the chart; a dead triangle has three times the same.
     pub tri: Vec<[u32; 3]>,
     /// Triangle across the side opposite each corner.

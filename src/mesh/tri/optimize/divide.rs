@@ -2,6 +2,7 @@
 
 use crate::base::fault::Result;
 use crate::base::job::{self, Job};
+use crate::base::work;
 use crate::mesh::tri::optimize::repair::{Keep, PatchPlan, PlanThreshold};
 use crate::mesh::tri::optimize::{LimitCheck, MeshOptimizer};
 use crate::mesh::tri::optimize_settings::DIVISION;
@@ -27,7 +28,25 @@ impl<'a> MeshOptimizer<'a> {
     ///
     /// Where changes can be checked before they are made, only rough triangles are repaired while many are divided, since repaired ones that
     /// exceed a limit have to be divided again; when all keep their limits, the others are repaired within the limits, and the worst are searched.
-    pub fn divide(&mut self, limit_check: &'a dyn LimitCheck, mut bad: Vec<u32>, job: &Job) -> Result<Vec<u32>> {
+    ///
+    /// Where border nodes may slide, all that is done once more with these; the triangles from before stay where they are better, in their worst
+    /// quality, their least angle or altogether.
+    pub fn divide(&mut self, limit_check: &'a dyn LimitCheck, bad: Vec<u32>, job: &Job) -> Result<Vec<u32>> {
+        let bad = self.divide_rounds(limit_check, bad, job)?;
+        if !bad.is_empty() || !self.wants_sliding() {
+            return Ok(bad);
+        }
+        let (before, quality, sharpest) = (self.triangulation.clone(), self.shape_quality(), self.sharpest());
+        self.start_sliding();
+        // As long as the first time at most, and only for better shapes: it is not charged.
+        let bad = work::uncharged(|| self.divide_rounds(limit_check, bad, job))?;
+        if !bad.is_empty() || self.sharpest() > sharpest || !self.shape_quality().is_no_worse_than(&quality) {
+            self.go_back(before);
+        }
+        Ok(Vec::new())
+    }
+
+    fn divide_rounds(&mut self, limit_check: &'a dyn LimitCheck, mut bad: Vec<u32>, job: &Job) -> Result<Vec<u32>> {
         let (wanted, mut settled) = (self.settings.min_quality, false);
         let mut unsearched = None;
         for round in 0..DIVISION.max_rounds {
@@ -78,7 +97,8 @@ impl<'a> MeshOptimizer<'a> {
             && (!bad.is_empty() || !self.shape_quality().is_no_worse_than(&quality))
         {
             // What a search made better was lost when its long sides were divided.
-            (self.triangulation, bad) = (triangulation, Vec::new());
+            self.go_back(triangulation);
+            bad = Vec::new();
         }
         Ok(bad)
     }

@@ -7,8 +7,9 @@ use crate::base::fault::Result;
 use crate::base::job::{self, Job};
 use crate::base::triangulate_points::NO_TRIANGLE;
 use crate::mesh::tri::optimize::repair::{PatchPlan, PlanThreshold};
+use crate::mesh::tri::optimize::slide::SlidPlace;
 use crate::mesh::tri::optimize::{MeshOptimizer, SearchBudget};
-use crate::mesh::tri::optimize_settings::LOCAL_SEARCH;
+use crate::mesh::tri::optimize_settings::{LOCAL_SEARCH, SLIDE};
 use crate::mesh::tri::shape::Star;
 use crate::mesh::tri::triangulation::Patch;
 
@@ -52,10 +53,12 @@ fn penalty_of(quality: f64) -> f64 {
     short * short * short * short
 }
 
-/// The penalty after a change and sweeps, and the free nodes then.
+/// The penalty after a change and sweeps, and the nodes that may move then.
 struct Swept {
     penalty: f64,
     places: Vec<(u32, DVec2, DVec3)>,
+    /// Border nodes with their fractions.
+    slid: Vec<(u32, f64)>,
 }
 
 impl MeshOptimizer<'_> {
@@ -155,12 +158,13 @@ impl MeshOptimizer<'_> {
             }
             self.triangulation.put_back(&kept);
         }
-        let Some((k, Swept { places, .. })) = best else { return false };
+        let Some((k, Swept { places, slid, .. })) = best else { return false };
         let (nodes, star) = self.apply(&changes[k], &nodes);
         self.size_factor.resize(self.triangulation.p.len(), 1.0);
         if let (Change::Star(patch, ..), Some(node)) = (&changes[k], star) {
             self.size_factor[node as usize] = self.mean_size_factor(&patch.rim);
         }
+        slid.into_iter().for_each(|(n, fraction)| self.triangulation.along[n as usize] = fraction);
         for (n, xy, p) in places {
             self.place(n, xy, p);
         }
@@ -229,14 +233,17 @@ impl MeshOptimizer<'_> {
     fn sweep(&mut self, nodes: &[u32], before: LocalQuality, most: f64, by_shape: bool) -> Option<Swept> {
         let all = self.rings_of(nodes);
         let (mut best, mut most): (Option<Swept>, f64) = (None, most);
+        let may_slide = self.may_slide && before.least_shape < SLIDE.min_quality;
         for round in 0..=LOCAL_SEARCH.max_sweeps {
             let now = self.local_quality(&all);
             let keeps_shapes = !by_shape || now.least_shape >= before.least_shape;
             let is_no_worse = now.least >= before.least && keeps_shapes;
             if now.penalty < most && is_no_worse && all.iter().all(|t| self.triangulation.chart_area(*t) > 0.0) {
-                let free = nodes.iter().filter(|n| self.triangulation.is_free(**n));
-                let places = free.map(|n| (*n, self.triangulation.xy[*n as usize], self.triangulation.p[*n as usize])).collect();
-                best = Some(Swept { penalty: now.penalty, places });
+                let movable = nodes.iter().filter(|n| self.triangulation.is_free(**n) || self.slides(**n));
+                let places = movable.map(|n| (*n, self.triangulation.xy[*n as usize], self.triangulation.p[*n as usize])).collect();
+                let sliding = nodes.iter().filter(|n| self.slides(**n));
+                let slid = sliding.map(|n| (*n, self.triangulation.along[*n as usize])).collect();
+                best = Some(Swept { penalty: now.penalty, places, slid });
                 most = now.penalty;
             }
             if round == LOCAL_SEARCH.max_sweeps || round == LOCAL_SEARCH.trial_sweeps && now.penalty > LOCAL_SEARCH.max_trial_ratio * most {
@@ -246,6 +253,7 @@ impl MeshOptimizer<'_> {
             for &node in nodes {
                 job::poll();
                 if !self.triangulation.is_free(node) {
+                    moved |= may_slide && self.sweep_border(node);
                     continue;
                 }
                 self.fill_rim(node);
@@ -267,6 +275,18 @@ impl MeshOptimizer<'_> {
         for (n, xy, p) in &best.places {
             (self.triangulation.xy[*n as usize], self.triangulation.p[*n as usize]) = (*xy, *p);
         }
+        best.slid.iter().for_each(|(n, fraction)| self.triangulation.along[*n as usize] = *fraction);
         all.iter().all(|t| self.keeps(self.triangulation.tri[*t as usize], None)).then_some(best)
+    }
+
+    /// Slides a border node a part of the way to where its worst triangle is best; whether it may slide.
+    fn sweep_border(&mut self, node: u32) -> bool {
+        let Some((before, best)) = self.best_slide(node) else { return false };
+        let Some(SlidPlace { fraction, xy, p, .. }) = self.part_of_slide(node, &before, &best, LOCAL_SEARCH.sweep_share) else {
+            return false;
+        };
+        let n = node as usize;
+        (self.triangulation.xy[n], self.triangulation.p[n], self.triangulation.along[n]) = (xy, p, fraction);
+        true
     }
 }

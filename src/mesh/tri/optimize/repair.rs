@@ -6,7 +6,7 @@ use crate::base::triangulate_points::NO_TRIANGLE;
 use crate::base::{job, work};
 use crate::mesh::chart::outline::area2;
 use crate::mesh::tri::optimize::MeshOptimizer;
-use crate::mesh::tri::optimize_settings::REPAIR;
+use crate::mesh::tri::optimize_settings::{REPAIR, SLIDE};
 use crate::mesh::tri::shape::Star;
 use crate::mesh::tri::triangulation::Patch;
 
@@ -47,7 +47,7 @@ impl MeshOptimizer<'_> {
     }
 
     /// Least gain of a change where the worst triangle has a quality.
-    fn min_gain(&self, worst: f64) -> f64 {
+    pub(super) fn min_gain(&self, worst: f64) -> f64 {
         if worst < self.settings.fair_quality { REPAIR.min_gain } else { REPAIR.min_fair_gain }
     }
 
@@ -72,8 +72,10 @@ impl MeshOptimizer<'_> {
     fn shift_corners(&mut self, t: u32) -> bool {
         let mut any = false;
         let since = self.failed_repairs.since(t);
+        let may_slide = self.may_slide && self.triangulation.shape(self.triangulation.tri[t as usize]) < SLIDE.min_quality;
         for node in self.triangulation.tri[t as usize] {
             if !self.triangulation.is_free(node) {
+                any |= may_slide && self.slide_corner(node, since);
                 continue;
             }
             self.fill_rim(node);
@@ -89,6 +91,16 @@ impl MeshOptimizer<'_> {
             }
         }
         any
+    }
+
+    /// Slides a corner on the border to where its worst triangle is best.
+    fn slide_corner(&mut self, node: u32, since: u32) -> bool {
+        if !self.slides(node) {
+            return false;
+        }
+        self.triangulation.ring(node, &mut self.ring);
+        let is_new = self.failed_repairs.is_new(self.ring.node.iter().copied().chain([node]), since);
+        is_new && self.slide(node)
     }
 
     /// Tries patches round a triangle with a node more or less; takes the best.

@@ -13,6 +13,8 @@ const MAX_USED_PLACES: usize = 8;
 pub struct Before {
     triangles: Vec<(u32, [u32; 3], [u32; 3], u8)>,
     nodes: Vec<(u32, DVec3, DVec2, f64, u32)>,
+    /// Fractions of border nodes that slide.
+    along: Vec<(u32, f64)>,
     /// Numbers of triangles and nodes.
     len: (usize, usize),
     /// Free places of triangles and nodes.
@@ -52,7 +54,9 @@ impl Triangulation {
             let k = n as usize;
             (n, self.p[k], self.xy[k], self.size[k], self.at[k])
         };
+        let slid = |n: &u32| Some((*n, *self.along.get(*n as usize)?));
         Before {
+            along: nodes.iter().filter_map(slid).collect(),
             triangles: all.into_iter().map(triangle).collect(),
             nodes: nodes.into_iter().map(node).collect(),
             len: (self.tri.len(), self.p.len()),
@@ -88,6 +92,7 @@ impl Triangulation {
             let n = n as usize;
             (self.p[n], self.xy[n], self.size[n], self.at[n]) = (p, xy, size, at);
         }
+        before.along.iter().for_each(|(n, fraction)| self.along[*n as usize] = *fraction);
     }
 }
 
