@@ -103,12 +103,12 @@ const SHARES: [(f64, f64); 10] = [
     (0.76, 0.245),
     (1.27, 0.5),
     (0.92, 0.31),
-    (0.46, 0.1),
-    (0.3, 0.11),
-    (0.3, 0.08),
+    (0.65, 0.1),
+    (0.49, 0.11),
+    (0.33, 0.08),
     (0.81, 0.27),
-    (1.28, 0.53),
-    (0.69, 0.19),
+    (1.31, 0.53),
+    (0.73, 0.19),
 ];
 
 #[test]
@@ -121,7 +121,7 @@ fn random_nets_keep_the_limit_with_few_triangles() {
         assert!(found.error <= limit, "{seed}: off by {} of {limit}", found.error);
         assert!(share <= most, "{seed}: {share} of the triangles");
         // The aims are 0.96 and 28°.
-        assert!(found.quality >= 0.895 && found.angle >= 26.0, "{seed}: quality {}, {}°", found.quality, found.angle);
+        assert!(found.quality >= 0.925 && found.angle >= 32.5, "{seed}: quality {}, {}°", found.quality, found.angle);
     }
 }
 

@@ -52,6 +52,11 @@ impl SizeRequests {
         let items = plan.refines.iter().enumerate().flat_map(|(k, refine)| sources_of(refine, k as u32));
         Ok(Self { sources: Sources::new(items.collect(), plan.slope()), floor, written: plan.settings.min_size.map_or(0.0, |s| s.0) })
     }
+
+    /// The same where bends ask for a length: a written floor, or a hundredth of that length.
+    pub fn floor_where(&self, length: f64) -> f64 {
+        if self.written > 0.0 { self.floor } else { self.floor.min(SETTINGS.floor * length) }
+    }
 }
 
 fn sources_of(refine: &Refine, tag: u32) -> Vec<Source> {

@@ -55,14 +55,14 @@ pub struct SearchBudget {
     pub max_extra_searches: usize,
     /// Largest number of passes over the bad triangles.
     pub max_rounds: usize,
-    /// Triangles are bad by their shapes, which get no worse: beside long steps of a border all sides are too long, and are divided.
+    /// Triangles are bad by their shapes alone: beside long steps of a border all sides are too long, and are divided.
     pub by_shape: bool,
 }
 
 impl SearchBudget {
     /// A few: where limits of bends are bounded triangle by triangle, a search costs many times more.
     pub const FEW: Self =
-        Self { triangles_per_search: 8000, triangles_per_extra_search: 64, max_extra_searches: 8, max_rounds: 1, by_shape: false };
+        Self { triangles_per_search: 8000, triangles_per_extra_search: 64, max_extra_searches: 24, max_rounds: 2, by_shape: false };
 
     /// The searches of a face with so many triangles.
     fn of(&self, triangles: usize) -> usize {

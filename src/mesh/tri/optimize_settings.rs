@@ -120,7 +120,7 @@ pub(crate) struct LocalSearchSettings {
 }
 
 pub(crate) const LOCAL_SEARCH: LocalSearchSettings =
-    LocalSearchSettings { max_sweeps: 10, trial_sweeps: 3, max_trial_ratio: 3.0, sweep_share: 0.4, max_penalty_ratio: 0.9 };
+    LocalSearchSettings { max_sweeps: 20, trial_sweeps: 3, max_trial_ratio: 3.0, sweep_share: 0.2, max_penalty_ratio: 0.97 };
 
 /// Search for the best place of a border node that slides (`optimize/slide.rs`).
 pub(crate) struct SlideSettings {

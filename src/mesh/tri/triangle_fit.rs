@@ -265,7 +265,8 @@ impl FaceFit<'_> {
             let (xy, p) = (0.5 * (self.outline.xy[a] + self.outline.xy[b]), 0.5 * (self.outline.p[a] + self.outline.p[b]));
             let there = background.map_or(f64::INFINITY, |field| field.size(xy, p)).min(self.face.size.0 * SPACING);
             let body = Body::Segment(self.outline.p[a], self.outline.p[b]);
-            let from = [(size.max(self.face_input.wanted.floor), 1.0), (size.max(least), STEEP)];
+            let floor = self.face_input.wanted.floor_where(there / spacing);
+            let from = [(size.max(floor), 1.0), (size.max(least), STEEP)];
             // Nodes are as far from it as it is long.
             let source = |(from, steep)| Source { body, radius: 0.0, size: from / spacing, steep, tag: BORDER_TAG };
             let is_short = |(from, steep): &(f64, f64)| size > 0.0 && from * (1.0 + slope * steep) < there;

@@ -100,7 +100,7 @@ impl MeshOptimizer<'_> {
                     continue;
                 }
                 left -= 1;
-                if self.try_all(t, budget) {
+                if self.try_all(t) {
                     better += 1;
                 } else {
                     self.failed_searches.give_up(t);
@@ -140,7 +140,7 @@ impl MeshOptimizer<'_> {
         self.failed_searches.is_new(self.triangulation.nodes_of(&near).into_iter(), since)
     }
 
-    fn try_all(&mut self, t: u32, budget: SearchBudget) -> bool {
+    fn try_all(&mut self, t: u32) -> bool {
         let corners = self.triangulation.tri[t as usize];
         let near = self.rings_of(&corners);
         let nodes = self.triangulation.nodes_of(&near);
@@ -153,7 +153,7 @@ impl MeshOptimizer<'_> {
             job::poll();
             let (nodes, _) = self.apply(change, &nodes);
             let most = best.as_ref().map_or(before.penalty * LOCAL_SEARCH.max_penalty_ratio, |best| best.1.penalty);
-            if let Some(swept) = self.sweep(&nodes, before, most, budget.by_shape) {
+            if let Some(swept) = self.sweep(&nodes, before, most) {
                 best = Some((k, swept));
             }
             self.triangulation.put_back(&kept);
@@ -229,15 +229,14 @@ impl MeshOptimizer<'_> {
     }
 
     /// Moves some nodes together in sweeps; the least penalty and where they were then, where that is less than
-    /// `most`, the worst triangle is no worse than before, and all keep the limits.
-    fn sweep(&mut self, nodes: &[u32], before: LocalQuality, most: f64, by_shape: bool) -> Option<Swept> {
+    /// `most`, the worst triangle is no worse than before, by its shape and with its lengths, and all keep the limits.
+    fn sweep(&mut self, nodes: &[u32], before: LocalQuality, most: f64) -> Option<Swept> {
         let all = self.rings_of(nodes);
         let (mut best, mut most): (Option<Swept>, f64) = (None, most);
         let may_slide = self.may_slide && before.least_shape < SLIDE.min_quality;
         for round in 0..=LOCAL_SEARCH.max_sweeps {
             let now = self.local_quality(&all);
-            let keeps_shapes = !by_shape || now.least_shape >= before.least_shape;
-            let is_no_worse = now.least >= before.least && keeps_shapes;
+            let is_no_worse = now.least >= before.least && now.least_shape >= before.least_shape;
             if now.penalty < most && is_no_worse && all.iter().all(|t| self.triangulation.chart_area(*t) > 0.0) {
                 let movable = nodes.iter().filter(|n| self.triangulation.is_free(**n) || self.slides(**n));
                 let places = movable.map(|n| (*n, self.triangulation.xy[*n as usize], self.triangulation.p[*n as usize])).collect();
