@@ -155,7 +155,7 @@ impl CachedFace {
         let sound = face.free.border + face.points.len() == nodes
             && face.free.triangles.iter().flatten().all(known)
             && face.free.quads.iter().flatten().all(known)
-            && face.slid.iter().all(|slid| (slid.node as usize) < face.free.border)
+            && face.slid.iter().all(|slid| (slid.node as usize) < face.free.border && slid.fraction > 0.0 && slid.fraction < 1.0)
             && face.decided.is_sound(face.points.len());
         sound.then_some(face)
     }

@@ -75,10 +75,12 @@ pub(crate) fn slide(layout: &Layout, nodes: &mut Nodes, border: &mut [DVec3], pr
         let (FaceNodes::Free(_, ids), Some(inside)) = (&face_mesh.geometry.nodes, &face_mesh.inside) else { continue };
         for SlidNode { node, fraction } in &inside.slid {
             let id = ids[*node as usize];
-            if let Some((segment, place)) = nodes.on_segment(id) {
-                nodes.slide(segment, place, *fraction);
-                border[id as usize] = layout.point(segment, *fraction);
-            }
+            let Some((segment, place)) = nodes.on_segment(id) else {
+                debug_assert!(false, "node {id} slid and is inside no segment");
+                continue;
+            };
+            nodes.slide(segment, place, *fraction);
+            border[id as usize] = layout.point(segment, *fraction);
         }
     }
 }

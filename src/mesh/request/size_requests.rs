@@ -53,7 +53,7 @@ impl SizeRequests {
         Ok(Self { sources: Sources::new(items.collect(), plan.slope()), floor, written: plan.settings.min_size.map_or(0.0, |s| s.0) })
     }
 
-    /// The same where bends ask for a length: a written floor, or a hundredth of that length.
+    /// The floor where bends ask for a length: as written, or at most a hundredth of that length.
     pub fn floor_where(&self, length: f64) -> f64 {
         if self.written > 0.0 { self.floor } else { self.floor.min(SETTINGS.floor * length) }
     }

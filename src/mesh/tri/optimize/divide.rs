@@ -38,7 +38,7 @@ impl<'a> MeshOptimizer<'a> {
         }
         let (before, quality, sharpest) = (self.triangulation.clone(), self.shape_quality(), self.sharpest());
         self.start_sliding();
-        // As long as the first time at most, and only for better shapes: it is not charged.
+        // Rounds and searches are bounded, and no face is to be given up for better shapes: this is not charged.
         let bad = work::uncharged(|| self.divide_rounds(limit_check, bad, job))?;
         if !bad.is_empty() || self.sharpest() > sharpest || !self.shape_quality().is_no_worse_than(&quality) {
             self.go_back(before);
