@@ -20,6 +20,7 @@ mod edits;
 mod fairing;
 mod fmt;
 mod fmt_cli;
+mod folds;
 mod geometry;
 mod golden;
 mod goldens_edits;

@@ -103,7 +103,7 @@ const CEILINGS: &[(&str, usize)] = &[
     ("network", 5_150),
     ("surface", 30_200),
     ("model", 7_100),
-    ("mesh", 33_900),
+    ("mesh", 34_700),
     ("hydrostatics", 2_300),
     ("io", 18_600),
     ("draw", 4_400),

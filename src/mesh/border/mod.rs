@@ -4,6 +4,7 @@ pub mod along;
 pub mod beside;
 pub mod counts;
 pub mod creases;
+pub mod folds;
 pub mod inside;
 pub mod layout;
 pub mod layout_check;

@@ -9,6 +9,7 @@ pub mod flat_triangle;
 mod heights;
 pub mod measure;
 mod measure_grid;
+pub mod point_triangle;
 pub mod poles;
 pub mod proof;
 pub mod quadratic;

@@ -7,14 +7,17 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use crate::base::predicates::orient;
 use crate::base::triangulate_points::{PointsFault, Triangles, points};
 use crate::base::{job, par};
 use crate::mesh::border::layout::Face;
+use crate::mesh::chart::affine::Chart;
 use crate::mesh::chart::face_input::{FaceInput, outlined};
 use crate::mesh::chart::outline::{Outline, inside};
+use crate::mesh::chart::parametric_surface::ParametricSurface;
+use crate::mesh::chart::rings::way_round;
 use crate::mesh::request::methods::Elements;
 use crate::mesh::request::sources::distance_to_segment;
 use crate::mesh::size::border_spacing::SPACING;
@@ -101,8 +104,8 @@ pub fn find(context: &FaceInput) -> Vec<Narrow> {
 }
 
 fn of_face(context: &FaceInput, face: &Face) -> Vec<Narrow> {
-    let Some((border, _, outline)) = outlined(context, face) else { return Vec::new() };
-    let scan = ProximityScan { context, face, outline: &outline, ids: &border.ids, steps: steps(context, face) };
+    let Some((border, chart, outline)) = outlined(context, face) else { return Vec::new() };
+    let scan = ProximityScan { context, face, chart: &chart, outline: &outline, ids: &border.ids, steps: steps(context, face) };
     let mut found = scan.narrow();
     if face.halved > 0 {
         found.extend(crate::mesh::size::girth::find(context, face));
@@ -151,6 +154,7 @@ fn steps(context: &FaceInput, face: &Face) -> BTreeMap<(u32, u32), BorderStep> {
 struct ProximityScan<'a> {
     context: &'a FaceInput<'a>,
     face: &'a Face,
+    chart: &'a Chart,
     outline: &'a Outline,
     /// Numbers of its nodes in the mesh.
     ids: &'a [u32],
@@ -277,7 +281,10 @@ impl ProximityScan<'_> {
             if same && corners.iter().any(|c| c.p != q && gap >= c.opens * (q.distance(c.p) + foot.distance(c.p))) {
                 continue;
             }
-            narrow.push((over, [a, b], t, gap));
+            let gap = gap.max(self.way_over_fold(over, [a, b], t));
+            if self.outline.length([a, b]) > SETTINGS.slack * self.longest_step(gap, floor).max(deepest) {
+                narrow.push((over, [a, b], t, gap));
+            }
         }
         let mut found = Vec::new();
         // Each step is seen from both sides of the gap.
@@ -301,6 +308,22 @@ impl ProximityScan<'_> {
             }
         }
         found
+    }
+
+    /// Length of the way over the surface from a node to a place of an edge, model units, where the surface faces opposite ways at the two: they
+    /// lie on the two sides of a fold, and may be nearer in space. Elsewhere 0.
+    fn way_over_fold(&self, over: u32, [a, b]: [u32; 2], t: f64) -> f64 {
+        let [over, a, b] = [over, a, b].map(|n| self.outline.xy[n as usize]);
+        let ends = [over, a.lerp(b, t)];
+        let surface = self.chart.surface();
+        let normal = |xy: DVec2| self.chart.spot(xy).normal();
+        // Beside a pole opposite sides are near each other.
+        let has_pole = || self.face.sides.iter().any(|side| side.pole.is_some());
+        if surface.is_flat() || has_pole() || normal(ends[0]).dot(normal(ends[1])) >= 0.0 {
+            return 0.0;
+        }
+        let [from, to] = ends.map(|xy| self.chart.uv(xy));
+        way_round(surface, from, to)
     }
 
     /// For each node the other ends of its edges.

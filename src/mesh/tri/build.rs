@@ -75,6 +75,10 @@ pub fn triangulate(task: &Task, job: &Job) -> Outcome<Triangulated> {
     if let Some(border) = task.sliding {
         optimizer.slide_on(border);
     }
+    if let Some(limit_check) = task.limit_check.filter(|limit_check| limit_check.holds_from_the_start()) {
+        optimizer.limit_check = Some(limit_check);
+        optimizer.guards_moves = true;
+    }
     optimizer.settle();
     job.go_on()?;
     if let Some(limit_check) = task.limit_check {

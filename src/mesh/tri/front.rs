@@ -21,7 +21,7 @@ use crate::mesh::chart::outline::{Outline, cross};
 use crate::mesh::chart::parametric_surface::{ParametricSurface, SizeField, Spot};
 use crate::mesh::request::plan::TALL;
 use crate::mesh::tri::placement_settings::FRONT;
-use crate::mesh::tri::point_hash::PointHash;
+use crate::mesh::tri::point_hash::{Facing, PointHash, SurfacePoint};
 
 /// What a lattice is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,12 +82,11 @@ struct FrontNode {
     size: f64,
 }
 
-/// A step of the front in the chart, with the point where it ends and the wanted length there.
+/// A step of the front from a place in the chart to a point, with the wanted length there.
 #[derive(Clone, Copy)]
 struct FrontStep {
     from: DVec2,
-    to: DVec2,
-    p: DVec3,
+    to: SurfacePoint,
     size: f64,
 }
 
@@ -98,6 +97,8 @@ struct Front<'a> {
     /// Samples of the border's edges.
     border: PointHash,
     edges: Vec<[u32; 2]>,
+    /// Points may lie on two sides of a fold.
+    has_folds: bool,
     grown: PlacedNodes,
     along: Vec<DVec3>,
     open: VecDeque<u32>,
@@ -123,6 +124,7 @@ pub fn grow(input: &FrontInput, job: &Job) -> Result<PlacedNodes> {
         nodes: PointHash::new(unit, !input.field.is_even()),
         border: PointHash::new(unit, !input.field.is_even()),
         edges,
+        has_folds: false,
         grown: PlacedNodes::default(),
         along: Vec::new(),
         open: VecDeque::new(),
@@ -164,28 +166,31 @@ impl Front<'_> {
     /// Nodes and samples of the border.
     fn border(&mut self) {
         let outline = self.input.outline;
-        for (p, xy) in outline.p.iter().zip(&outline.xy) {
-            self.nodes.add(*p, *xy, self.input.field.size(*xy, *p), u32::MAX);
+        let nodes = border_points(outline, self.input.chart_surface);
+        self.has_folds = nodes.iter().any(|node| node.facing != Facing::default());
+        for node in &nodes {
+            self.nodes.add(*node, self.input.field.size(node.xy, node.p), u32::MAX);
         }
-        self.border = samples(outline, self.input.field);
+        self.border = samples(outline, self.input.field, &nodes);
     }
 
     fn seed(&mut self, xy: DVec2, along: DVec3) {
         let spot = self.input.chart_surface.spot(xy);
         let size = self.input.field.size(xy, spot.p);
-        if self.near_node(spot.p, size) || self.near_border(FrontStep { from: xy, to: xy, p: spot.p, size }) {
+        let at = self.point(xy, &spot);
+        if self.near_node(at, size) || self.near_border(FrontStep { from: xy, to: at, size }) {
             return;
         }
         let normal = spot.normal();
         let along = along.reject_from_normalized(normal).try_normalize().unwrap_or_else(|| spot.dx.normalize_or_zero());
-        self.add(xy, spot.p, size, along);
+        self.add(at, size, along);
     }
 
-    fn add(&mut self, xy: DVec2, p: DVec3, size: f64, along: DVec3) {
+    fn add(&mut self, at: SurfacePoint, size: f64, along: DVec3) {
         let id = self.grown.p.len() as u32;
-        self.nodes.add(p, xy, size, id);
-        self.grown.xy.push(xy);
-        self.grown.p.push(p);
+        self.nodes.add(at, size, id);
+        self.grown.xy.push(at.xy);
+        self.grown.p.push(at.p);
         self.grown.size.push(size);
         self.along.push(along);
         self.open.push_back(id);
@@ -217,44 +222,52 @@ impl Front<'_> {
     /// the one of the step.
     fn propose(&mut self, from: FrontNode, spot: &Spot, way: DVec3, ratio: f64, ahead: Option<DVec3>) {
         let FrontNode { xy, p, size } = from;
-        let guess = p + way * size;
+        let Some(step) = spot.step(way * size) else { return };
+        let here = self.point(xy, spot);
+        let on_tangent = |length: f64| SurfacePoint { p: p + way * length, xy: xy + step * (length / size), ..here };
+        let guess = on_tangent(size);
         if self.input.cell == LatticeCell::Triangle && self.nodes.beside(guess, FRONT.min_guess_spacing * size, size) {
             return;
         }
-        let Some(step) = spot.step(way * size) else { return };
         // The mean of the lengths wanted here and there.
-        let there = self.input.field.size(self.input.chart_surface.clamp(xy + step), guess);
+        let there = self.input.field.size(self.input.chart_surface.clamp(guess.xy), guess.p);
         let length = 0.5 * (size + there) * ratio;
-        if self.near_node(p + way * length, there) {
+        let wanted = on_tangent(length);
+        if self.near_node(wanted, there) {
             return;
         }
-        let step = step * (length / size);
-        let outside = (xy + step).cmplt(self.within.0).any() || (xy + step).cmpgt(self.within.1).any();
-        if outside || self.near_border(FrontStep { from: xy, to: xy + step, p: p + way * length, size: there }) {
+        let outside = wanted.xy.cmplt(self.within.0).any() || wanted.xy.cmpgt(self.within.1).any();
+        if outside || self.near_border(FrontStep { from: xy, to: wanted, size: there }) {
             return;
         }
-        let mut to = self.input.chart_surface.clamp(xy + step);
-        let mut new = self.input.chart_surface.spot(to);
-        // The surface bends away from its tangent plane: a second step with the corrected length.
+        let spot_at = |xy: DVec2| {
+            let xy = self.input.chart_surface.clamp(xy);
+            (xy, self.input.chart_surface.spot(xy))
+        };
+        let (mut to, mut new) = spot_at(wanted.xy);
+        let mut at = self.point(to, &new);
+        // The surface bends away from its tangent plane: a second step with the corrected length, but not beyond a fold.
         let reached = new.p.distance(p);
         if (reached - length).abs() > FRONT.max_step_error * length && reached > 0.0 {
-            to = self.input.chart_surface.clamp(xy + step * (length / reached));
-            new = self.input.chart_surface.spot(to);
-            if self.near_border(FrontStep { from: xy, to, p: new.p, size: there }) {
+            if !at.facing.is_opposite(here.facing) {
+                (to, new) = spot_at(xy + step * (length / size) * (length / reached));
+                at = self.point(to, &new);
+            }
+            if self.near_border(FrontStep { from: xy, to: at, size: there }) {
                 return;
             }
         }
         if new.p.distance(p) > FRONT.max_step_ratio * length || self.is_on_edge(to) {
             return;
         }
-        let off = new.p.distance_squared(p + way * length);
-        if off > FRONT.same_place_distance * FRONT.same_place_distance * there * there && self.near_node(new.p, there) {
+        let off = new.p.distance_squared(wanted.p);
+        if off > FRONT.same_place_distance * FRONT.same_place_distance * there * there && self.near_node(at, there) {
             return;
         }
         let arm = ahead.unwrap_or(new.p - p);
         let along = arm.reject_from_normalized(new.normal()).normalize_or_zero();
         if along != DVec3::ZERO {
-            self.add(to, new.p, there, along);
+            self.add(at, there, along);
         }
     }
 
@@ -263,7 +276,12 @@ impl Front<'_> {
         !(xy.cmpgt(self.within.0).all() && xy.cmplt(self.within.1).all())
     }
 
-    fn near_node(&self, p: DVec3, size: f64) -> bool {
+    /// A point of the surface; where nothing is folded all points face all ways.
+    fn point(&self, xy: DVec2, spot: &Spot) -> SurfacePoint {
+        SurfacePoint { p: spot.p, xy, facing: if self.has_folds { Facing::of(spot.normal()) } else { Facing::default() } }
+    }
+
+    fn near_node(&self, p: SurfacePoint, size: f64) -> bool {
         if self.input.cell == LatticeCell::Square {
             return self.near_square(p, size);
         }
@@ -278,19 +296,26 @@ impl Front<'_> {
     /// Whether a step meets an edge of the border, or ends nearer to one than `min_distance` times the wanted length. A step from a
     /// `node` of the border may meet its edges.
     fn near_edges(&self, step: FrontStep, min_distance: f64, node: Option<u32>) -> bool {
-        let FrontStep { from, to, p, size } = step;
+        let FrontStep { from, to, size } = step;
         let outline = self.input.outline;
-        self.border.any(p, FRONT.border_search_radius * size, size, |sample, _| {
+        self.border.any(to, FRONT.border_search_radius * size, size, |sample, _| {
             let edge = self.edges[sample.tag as usize];
             let [a, b] = edge.map(|n| n as usize);
             let own = node.is_some_and(|n| edge.contains(&n));
-            !own && cross(from, to, outline.xy[a], outline.xy[b]) || apart(p, outline.p[a], outline.p[b]) < min_distance * size
+            !own && cross(from, to.xy, outline.xy[a], outline.xy[b]) || apart(to.p, outline.p[a], outline.p[b]) < min_distance * size
         })
     }
 }
 
+/// The nodes of a border. On planes and on faces with a pole, beside which opposite sides are near each other, they face all ways.
+pub(crate) fn border_points(outline: &Outline, chart_surface: &dyn ParametricSurface) -> Vec<SurfacePoint> {
+    let is_bent = chart_surface.plane().is_none() && outline.edges().all(|edge| outline.length(edge) > 0.0);
+    let facing = |xy: DVec2| if is_bent { Facing::of(chart_surface.spot(xy).normal()) } else { Facing::default() };
+    outline.p.iter().zip(&outline.xy).map(|(p, xy)| SurfacePoint { p: *p, xy: *xy, facing: facing(*xy) }).collect()
+}
+
 /// Samples along the edges of a border, near enough to each other that each edge is found from a step away; tagged by edge.
-pub(crate) fn samples(outline: &Outline, field: &dyn SizeField) -> PointHash {
+pub(crate) fn samples(outline: &Outline, field: &dyn SizeField, nodes: &[SurfacePoint]) -> PointHash {
     let unit = outline.edges().map(|e| outline.length(e)).fold(f64::MIN_POSITIVE, f64::max);
     let mut cells = PointHash::new(unit, !field.is_even());
     for (k, [a, b]) in outline.edges().enumerate() {
@@ -311,7 +336,8 @@ pub(crate) fn samples(outline: &Outline, field: &dyn SizeField) -> PointHash {
             work::spend(FRONT.sample_work * n as u64);
             for i in 0..=n {
                 let t = from + (to - from) * i as f64 / n as f64;
-                cells.add(pa.lerp(pb, t), xa.lerp(xb, t), size(t), k as u32);
+                let facing = nodes[if t < 0.5 { a } else { b } as usize].facing;
+                cells.add(SurfacePoint { p: pa.lerp(pb, t), xy: xa.lerp(xb, t), facing }, size(t), k as u32);
             }
         }
     }

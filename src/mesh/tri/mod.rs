@@ -1,10 +1,12 @@
 //! Free faces of triangles: placed by a front or a quadtree, or triangulated between isolines; optimised, refined, coarsened.
 
 pub mod background;
+pub mod bound_check;
 pub mod build;
 pub mod coarse;
 pub mod coarsen;
 pub mod fill;
+pub mod fold_check;
 pub mod front;
 pub mod graded_size;
 mod grid_lines;

@@ -81,6 +81,11 @@ pub trait LimitCheck {
     /// Whether triangles are bounded one by one, so that a change can be checked before it is made.
     fn is_per_triangle(&self) -> bool;
 
+    /// Whether nodes keep the limits from the first move on, and not only when all triangles do.
+    fn holds_from_the_start(&self) -> bool {
+        false
+    }
+
     /// Allows the face the work that bounds of so many triangles may take; none where they are not bounded one by one.
     fn allow_work(&self, triangles: usize);
 
@@ -101,6 +106,8 @@ pub struct MeshOptimizer<'a> {
     pub settings: OptimizeSettings,
     /// The limits of repaired triangles.
     pub limit_check: Option<&'a dyn LimitCheck>,
+    /// Whether moves and flips of the first rounds keep the limits too.
+    pub guards_moves: bool,
     /// Border nodes that may slide.
     sliding: Option<&'a SlidingBorder<'a>>,
     /// Whether they do: once nothing else makes the worst triangles better.
@@ -142,6 +149,7 @@ impl<'a> MeshOptimizer<'a> {
             field,
             settings,
             limit_check: None,
+            guards_moves: false,
             sliding: None,
             may_slide: false,
             reserved_work: 0,

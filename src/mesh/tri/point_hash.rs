@@ -6,13 +6,58 @@ const NONE: u32 = u32::MAX;
 /// Levels kept apart: sizes from 2^-LEVELS/2 to 2^LEVELS/2 of the unit.
 const LEVELS: i32 = 64;
 
-/// A point of the hash.
-#[derive(Clone, Copy, Debug)]
-pub struct HashedPoint {
+/// Which way a surface faces at a point, roughly; all ways on a plane and at a pole.
+///
+/// Points that are near each other in space and face opposite ways lie on the two sides of a fold, and far from each other on the surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Facing([i8; 3]);
+
+impl Facing {
+    /// Digits of a unit vector.
+    const UNIT: f64 = 100.0;
+    /// Cosine of the angle between normals from which on they are opposite: 120°. Nodes on the bend itself are near those on both sides.
+    const OPPOSITE: f64 = -0.5;
+
+    /// By the unit normal, or zero.
+    pub fn of(normal: DVec3) -> Self {
+        Self((normal * Self::UNIT).to_array().map(|c| c.round() as i8))
+    }
+
+    /// Whether two points lie on the two sides of a fold.
+    pub fn is_opposite(self, other: Self) -> bool {
+        const LEAST: i32 = (Facing::OPPOSITE * Facing::UNIT * Facing::UNIT) as i32;
+        let [x, y, z] = [0, 1, 2].map(|k| i32::from(self.0[k]) * i32::from(other.0[k]));
+        x + y + z < LEAST
+    }
+}
+
+/// A point of a surface.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct SurfacePoint {
     /// Where.
     pub p: DVec3,
     /// Its place in the chart.
     pub xy: DVec2,
+    /// Which way the surface faces.
+    pub facing: Facing,
+}
+
+impl SurfacePoint {
+    /// Longest way in the chart between points that are near each other, over their largest distance in space: half round a tube it is the
+    /// quarter of the length of a circle over its radius.
+    const MAX_WAY: f64 = 1.6;
+
+    /// Whether a point that is nearer in space than `reach` lies on the other side of a fold.
+    fn is_beyond_fold(&self, other: &Self, reach: f64) -> bool {
+        self.facing.is_opposite(other.facing) && self.xy.distance_squared(other.xy) > Self::MAX_WAY * Self::MAX_WAY * reach * reach
+    }
+}
+
+/// A point of the hash.
+#[derive(Clone, Copy, Debug)]
+pub struct HashedPoint {
+    /// The point.
+    pub at: SurfacePoint,
     /// A number of the caller.
     pub tag: u32,
     next: u32,
@@ -62,15 +107,15 @@ impl PointHash {
     }
 
     /// Adds a point of a size.
-    pub fn add(&mut self, p: DVec3, xy: DVec2, size: f64, tag: u32) {
+    pub fn add(&mut self, at: SurfacePoint, size: f64, tag: u32) {
         let middle = self.level(size);
         let beside = i32::from(self.mixed);
         for level in middle - beside..=middle + beside {
             if self.entries.len() >= self.head.len() {
                 self.grow();
             }
-            let slot = self.home(p, level);
-            self.entries.push(HashedPoint { p, xy, tag, next: self.head[slot], level });
+            let slot = self.home(at.p, level);
+            self.entries.push(HashedPoint { at, tag, next: self.head[slot], level });
             self.head[slot] = self.entries.len() as u32 - 1;
         }
     }
@@ -83,18 +128,18 @@ impl PointHash {
     fn grow(&mut self) {
         self.head = vec![NONE; self.head.len() * 4];
         for k in 0..self.entries.len() {
-            let slot = self.home(self.entries[k].p, self.entries[k].level);
+            let slot = self.home(self.entries[k].at.p, self.entries[k].level);
             self.entries[k].next = std::mem::replace(&mut self.head[slot], k as u32);
         }
     }
 
-    /// Whether a point nearer than `reach` is in the cube of a place: a fast test that is sufficient most often.
-    pub fn beside(&self, p: DVec3, reach: f64, size: f64) -> bool {
+    /// Whether a point nearer than `reach` on the same side of a fold is in the cube of a place: a fast test that is sufficient most often.
+    pub fn beside(&self, place: SurfacePoint, reach: f64, size: f64) -> bool {
         let level = self.level(size);
-        let mut at = self.head[self.home(p, level)];
+        let mut at = self.head[self.home(place.p, level)];
         while at != NONE {
             let e = &self.entries[at as usize];
-            if e.level == level && e.p.distance_squared(p) < reach * reach {
+            if e.level == level && e.at.p.distance_squared(place.p) < reach * reach && !e.at.is_beyond_fold(&place, reach) {
                 return true;
             }
             at = e.next;
@@ -102,12 +147,13 @@ impl PointHash {
         false
     }
 
-    /// Calls `visit` with the points nearer than `reach` and the square of their distance, of sizes within a factor of two
-    /// or so of `size`; stops when it returns `true`; whether it did.
-    pub fn any(&self, p: DVec3, reach: f64, size: f64, mut visit: impl FnMut(&HashedPoint, f64) -> bool) -> bool {
+    /// Calls `visit` with the points nearer than `reach` on the same side of a fold and the square of their distance, of sizes within a
+    /// factor of two or so of `size`; stops when it returns `true`; whether it did.
+    pub fn any(&self, place: SurfacePoint, reach: f64, size: f64, mut visit: impl FnMut(&HashedPoint, f64) -> bool) -> bool {
         let level = self.level(size);
         let square = reach * reach;
         let inv = 1.0 / self.side(level);
+        let p = place.p;
         let (low, high) = (((p - reach) * inv).floor(), ((p + reach) * inv).floor());
         for z in low.z as i64..=high.z as i64 {
             for y in low.y as i64..=high.y as i64 {
@@ -116,8 +162,8 @@ impl PointHash {
                     while at != NONE {
                         let e = &self.entries[at as usize];
                         // Other levels may share the slot; each has its own entry of the point.
-                        let d = e.p.distance_squared(p);
-                        if e.level == level && d < square && visit(e, d) {
+                        let d = e.at.p.distance_squared(p);
+                        if e.level == level && d < square && !e.at.is_beyond_fold(&place, reach) && visit(e, d) {
                             return true;
                         }
                         at = e.next;

@@ -10,10 +10,10 @@ use crate::base::job;
 use crate::base::tolerance::ON_EDGE;
 use crate::mesh::chart::outline::Outline;
 use crate::mesh::chart::parametric_surface::{ParametricSurface, SizeField};
-use crate::mesh::tri::front::{PlacedNodes, apart, samples};
+use crate::mesh::tri::front::{PlacedNodes, apart, border_points, samples};
 use crate::mesh::tri::no_mesh::NoMesh;
 use crate::mesh::tri::placement_settings::{FRONT, QUADTREE};
-use crate::mesh::tri::point_hash::PointHash;
+use crate::mesh::tri::point_hash::{Facing, PointHash, SurfacePoint};
 use crate::mesh::tri::tree::{Class, Halt, Tree, TreeCell};
 
 /// The face of a tree.
@@ -114,6 +114,8 @@ fn corners(task: &TreeFace, segments: &[[DVec2; 2]], tree: &Tree) -> PlacedNodes
 /// The nodes placed so far.
 struct PlacedCells<'a> {
     task: &'a TreeFace<'a>,
+    /// Points may lie on two sides of a fold.
+    has_folds: bool,
     /// Places along the border.
     border: PointHash,
     /// Edges of the border whose chords are off the surface, in the chart.
@@ -135,23 +137,33 @@ impl<'a> PlacedCells<'a> {
         };
         let bent = outline.edges().filter(is_bent).map(|edge| edge.map(|n| outline.xy[n as usize])).collect();
         let unit = outline.edges().map(|e| outline.length(e)).fold(f64::MIN_POSITIVE, f64::max);
-        Self { task, border: samples(outline, task.field), bent, nodes: PointHash::new(unit, true), grown: PlacedNodes::default() }
+        let nodes = border_points(outline, task.chart_surface);
+        Self {
+            task,
+            has_folds: nodes.iter().any(|node| node.facing != Facing::default()),
+            border: samples(outline, task.field, &nodes),
+            bent,
+            nodes: PointHash::new(unit, true),
+            grown: PlacedNodes::default(),
+        }
     }
 
     /// Places a node at a corner of cells with these least sides, in space and in the chart, where nothing is too near.
     fn consider(&mut self, xy: DVec2, side: f64, side_in_chart: DVec2) {
         let outline = self.task.outline;
-        let p = self.task.chart_surface.spot(xy).p;
+        let spot = self.task.chart_surface.spot(xy);
+        let p = spot.p;
+        let at = SurfacePoint { p, xy, facing: if self.has_folds { Facing::of(spot.normal()) } else { Facing::default() } };
         let size = self.task.field.size(xy, p);
-        let near = self.border.any(p, FRONT.border_search_radius * size, size, |sample, _| {
+        let near = self.border.any(at, FRONT.border_search_radius * size, size, |sample, _| {
             let [a, b] = outline.edge(sample.tag).map(|n| outline.p[n as usize]);
             apart(p, a, b) < QUADTREE.min_border_distance * side
         });
         let beside = |edge: &[DVec2; 2]| is_beside(xy, *edge, side_in_chart, QUADTREE.min_chart_distance);
-        if near || self.bent.iter().any(beside) || self.nodes.any(p, QUADTREE.min_node_spacing * side, side, |_, _| true) {
+        if near || self.bent.iter().any(beside) || self.nodes.any(at, QUADTREE.min_node_spacing * side, side, |_, _| true) {
             return;
         }
-        self.nodes.add(p, xy, side, 0);
+        self.nodes.add(at, side, 0);
         self.grown.xy.push(xy);
         self.grown.p.push(p);
         self.grown.size.push(size);

@@ -22,13 +22,14 @@ use crate::mesh::request::limits::Limits;
 use crate::mesh::request::methods::{Elements, Method};
 use crate::mesh::request::size_requests::floor_keeps;
 use crate::mesh::request::sources::{Body, STEEP, Source, Sources};
-use crate::mesh::request::work::allow;
 use crate::mesh::size::border_spacing::{FILLED, SPACING};
 use crate::mesh::tri::background::Background;
+use crate::mesh::tri::bound_check::BoundCheck;
 use crate::mesh::tri::build::{NodePlacement, Task, expected_nodes, triangulate};
+use crate::mesh::tri::fold_check::FoldCheck;
 use crate::mesh::tri::front::HolesInLattice;
 use crate::mesh::tri::graded_size::GradedSize;
-use crate::mesh::tri::limit_table::{LimitTable, ratio};
+use crate::mesh::tri::limit_table::LimitTable;
 use crate::mesh::tri::longest::{Longest, longest_side};
 use crate::mesh::tri::no_mesh::{NoMesh, Outcome};
 use crate::mesh::tri::optimize::{LimitCheck, OptimizeSettings};
@@ -36,11 +37,6 @@ use crate::mesh::tri::optimize_settings::{BENT_FACE, EVEN_FACE, FIT, GRADED_FACE
 use crate::mesh::tri::sliding_border::SlidingBorder;
 use crate::mesh::tri::triangulation::Triangulation;
 use crate::surface::Surface;
-
-/// Number of curves of a point at which bounding a triangle costs as much as on a net.
-const CURVES_OF_A_NET: usize = 2;
-/// Largest cost of bounding a triangle that is allowed, over that on a net.
-const MAX_NETS: usize = 8;
 
 /// The tag of the edges of a border among sources.
 const BORDER_TAG: u32 = u32::MAX;
@@ -176,65 +172,6 @@ pub(crate) fn near(face_input: &FaceInput, face: &Face, outline: &Outline) -> So
     Sources::new(items.copied().collect(), all.slope())
 }
 
-/// The limits of sides by their lengths, and of triangles by their bounds.
-struct Bounded<'a> {
-    fit: &'a FaceFit<'a>,
-    /// Length of sides up to which limits are not kept, model units.
-    floor: f64,
-    ratios: &'a RefCell<LimitTable>,
-    /// Work that was allowed for the triangles so far, over all rounds.
-    allowed: &'a Cell<u64>,
-}
-
-impl LimitCheck for Bounded<'_> {
-    fn broken(&self, triangulation: &Triangulation, some: &[u32]) -> Vec<u32> {
-        let mut ratios = self.ratios.borrow_mut();
-        ratios.update(self.fit.chart, triangulation, some, &self.fit.limits);
-        let mut found = self.fit.longest.broken(triangulation, some);
-        let over = |t: &u32| ratios.of(*t).worst() > 1.0 && longest_side(triangulation, *t) > self.floor;
-        found.extend(some.iter().copied().filter(over));
-        found.sort_unstable();
-        found.dedup();
-        found
-    }
-
-    fn is_per_triangle(&self) -> bool {
-        true
-    }
-
-    fn allow_work(&self, triangles: usize) {
-        let (across, along) = self.fit.surface.curves_of_a_point();
-        let nets = ((across + along) / CURVES_OF_A_NET).clamp(1, MAX_NETS);
-        let mut worth = self.allowed.get();
-        allow(triangles as u64 * nets as u64, &mut worth);
-        self.allowed.set(worth);
-    }
-
-    fn keeps(&self, triangulation: &Triangulation, corners: [u32; 3], first: Option<(DVec2, DVec3)>) -> bool {
-        let [a, b, c] = corners.map(|n| n as usize);
-        let a = first.map_or_else(|| triangulation.p[a], |first| first.1);
-        let longest =
-            a.distance(triangulation.p[b]).max(triangulation.p[b].distance(triangulation.p[c])).max(triangulation.p[c].distance(a));
-        longest <= self.floor || ratio(self.fit.chart, triangulation, corners, first, &self.fit.limits).worst() <= 1.0
-    }
-}
-
-impl LimitCheck for Longest<'_> {
-    fn broken(&self, triangulation: &Triangulation, some: &[u32]) -> Vec<u32> {
-        self.broken(triangulation, some)
-    }
-
-    fn is_per_triangle(&self) -> bool {
-        false
-    }
-
-    fn allow_work(&self, _: usize) {}
-
-    fn keeps(&self, _: &Triangulation, _: [u32; 3], _: Option<(DVec2, DVec3)>) -> bool {
-        true
-    }
-}
-
 impl FaceFit<'_> {
     /// Distances of nodes by the bends of the surface.
     pub(crate) fn background(&self, limits: &Limits) -> Background {
@@ -293,10 +230,15 @@ impl FaceFit<'_> {
 
     /// Without limits on bends: nodes nearer to each other until no side is too long.
     fn even(&self, field: &mut GradedSize, job: &Job) -> Outcome<Triangulation> {
+        let allowed = Cell::new(0);
+        let folds = FoldCheck { fit: self, allowed: &allowed };
+        let mut has_folds = false;
         for _ in 0..FIT.max_rounds {
             let same = UniformSize(field.spacing * self.face.size.0);
             let field_now: &dyn SizeField = if field.sources.is_empty() { &same } else { &*field };
-            match triangulate(&self.task(field_now, &self.longest), job)? {
+            let limit_check: &dyn LimitCheck = if has_folds { &folds } else { &self.longest };
+            match triangulate(&self.task(field_now, limit_check), job)? {
+                Ok(result) if !has_folds && !self.surface.is_flat() && folds.is_needed(&result.triangulation) => has_folds = true,
                 Ok(result) if !result.keeps_limits => field.spacing *= FIT.size_factor,
                 other => return Ok(other.map(|result| result.triangulation)),
             }
@@ -313,7 +255,7 @@ impl FaceFit<'_> {
         let mut worst = (0.0, DVec3::ZERO, MeshLimit::ChordError);
         let (ratios, allowed) = (RefCell::new(LimitTable::default()), Cell::new(0));
         for _ in 0..FIT.max_rounds {
-            let limit_check = Bounded { fit: self, floor, ratios: &ratios, allowed: &allowed };
+            let limit_check = BoundCheck { fit: self, floor, ratios: &ratios, allowed: &allowed };
             let triangulation = match triangulate(&self.task(&*field, &limit_check), job)? {
                 // Below a floor limits may be exceeded: `lower` reports that.
                 Ok(result) if result.keeps_limits && floor == 0.0 => return Ok(Ok(result.triangulation)),

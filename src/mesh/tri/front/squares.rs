@@ -7,6 +7,7 @@ use crate::base::math;
 use crate::mesh::tri::front::square_lattice::{LatticeFrame, SquareLattice};
 use crate::mesh::tri::front::{Front, FrontStep, HolesInLattice, STRAIGHT};
 use crate::mesh::tri::placement_settings::{FRONT, SQUARE_HOLES, SQUARE_ROWS};
+use crate::mesh::tri::point_hash::SurfacePoint;
 
 /// A right angle, radians.
 const RIGHT: f64 = std::f64::consts::FRAC_PI_2;
@@ -77,28 +78,29 @@ impl Front<'_> {
         let step = lattice.step() / DVec2::from(self.steps).max_element();
         lattice.nodes(|xy, is_fitted| {
             let p = surface.point(xy);
+            let at = SurfacePoint { p, xy, ..SurfacePoint::default() };
             let size = self.input.field.size(xy, p);
             let fits = || {
                 size >= SQUARE_HOLES.min_wanted_elsewhere * step
-                    && !self.near_rows(p, size, |_| false)
-                    && !self.near_border(FrontStep { from: xy, to: xy, p, size })
+                    && !self.near_rows(at, size, |_| false)
+                    && !self.near_border(FrontStep { from: xy, to: at, size })
             };
             if is_fitted || fits() {
-                self.add(xy, p, size, along);
+                self.add(at, size, along);
             }
             self.grown.p.len() <= self.input.most
         });
     }
 
     /// Whether a place is too near to a node, or between two of the first row.
-    pub(crate) fn near_square(&self, p: DVec3, size: f64) -> bool {
+    pub(crate) fn near_square(&self, p: SurfacePoint, size: f64) -> bool {
         let lattice = self.row..self.lattice_end;
         let wide = if lattice.is_empty() { 0.0 } else { SQUARE_HOLES.min_spacing_beside * size };
         self.nodes.any(p, wide, size, |node, _| lattice.contains(&node.tag)) || self.near_rows(p, size, |_| true)
     }
 
     /// Whether a place is too near to a node, or between two of the border or the first row; of the others those that `counts`.
-    fn near_rows(&self, p: DVec3, size: f64, counts: impl Fn(u32) -> bool) -> bool {
+    fn near_rows(&self, at: SurfacePoint, size: f64, counts: impl Fn(u32) -> bool) -> bool {
         // The middle of a cell is as far from its corners as its steps are long.
         let steps = DVec2::from(self.steps).length() * std::f64::consts::FRAC_1_SQRT_2;
         let (near, far) = (
@@ -106,16 +108,16 @@ impl Front<'_> {
             SQUARE_ROWS.min_lattice_spacing * steps * size,
         );
         let mut beside = 0;
-        let over = |tag: u32, at: DVec3| (p - at).dot(self.arms[tag as usize]) < SQUARE_ROWS.min_first_row_spacing * size;
+        let over = |tag: u32, node: DVec3| (at.p - node).dot(self.arms[tag as usize]) < SQUARE_ROWS.min_first_row_spacing * size;
         let row = |tag: u32| tag < self.row;
-        self.nodes.any(p, far, size, |node, square| {
+        self.nodes.any(at, far, size, |node, square| {
             let is_inner = node.tag != u32::MAX && !row(node.tag);
             if is_inner && !counts(node.tag) {
                 return false;
             }
             beside += 1;
             square < near || beside > 1 || is_inner
-        }) || self.nodes.any(p, size, size, |node, _| row(node.tag) && over(node.tag, node.p))
+        }) || self.nodes.any(at, size, size, |node, _| row(node.tag) && over(node.tag, node.at.p))
     }
 
     /// Straight runs of the loops; the node of each is in its middle.
@@ -189,13 +191,14 @@ impl Front<'_> {
             let Some(step) = spot.step(*arm) else { continue };
             let to = self.input.chart_surface.clamp(xy + step);
             let new = self.input.chart_surface.spot(to);
-            let near = self.near_edges(FrontStep { from: xy, to, p: new.p, size }, SQUARE_ROWS.min_border_distance, Some(node));
-            let occupied = self.nodes.any(new.p, SQUARE_ROWS.min_spacing_within_row * size, size, |_, _| true);
+            let at = self.point(to, &new);
+            let near = self.near_edges(FrontStep { from: xy, to: at, size }, SQUARE_ROWS.min_border_distance, Some(node));
+            let occupied = self.nodes.any(at, SQUARE_ROWS.min_spacing_within_row * size, size, |_, _| true);
             let ahead = along.reject_from_normalized(new.normal()).normalize_or_zero();
             let far = new.p.distance(spot.p) > FRONT.max_step_ratio * arm.length() || self.is_on_edge(to);
             if !near && !occupied && !far {
                 let ahead = if ahead == DVec3::ZERO { arm.reject_from_normalized(new.normal()).normalize_or_zero() } else { ahead };
-                self.add(to, new.p, size, ahead);
+                self.add(at, size, ahead);
                 self.arms.push(arm.normalize_or_zero());
             }
         }

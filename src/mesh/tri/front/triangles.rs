@@ -1,11 +1,12 @@
 //! The first row of a lattice of triangles: a node in each corner that two of them fill, and one over each edge of the border.
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 use crate::base::math;
 use crate::mesh::chart::outline::cross;
 use crate::mesh::tri::front::{Front, FrontStep, STRAIGHT, apart};
 use crate::mesh::tri::placement_settings::{FRONT, TWO_TRIANGLE_CORNERS};
+use crate::mesh::tri::point_hash::SurfacePoint;
 
 impl Front<'_> {
     /// A row of nodes along the border, each the tip of an equilateral triangle over an edge; they do not grow further but
@@ -34,11 +35,12 @@ impl Front<'_> {
             if new.p.distance(spot.p) > FRONT.max_step_ratio * tall || self.is_on_edge(to) {
                 continue;
             }
-            if self.near_node(new.p, size) || self.near_others(to, new.p, size, [a, b]) {
+            let at = self.point(to, &new);
+            if self.near_node(at, size) || self.near_others(at, size, [a, b]) {
                 continue;
             }
             let along = along.reject_from_normalized(new.normal()).normalize_or_zero();
-            self.add(to, new.p, size, along);
+            self.add(at, size, along);
             self.open.clear();
             if run.0 > best && along != DVec3::ZERO {
                 (best, first) = (run.0, Some(self.grown.p.len() as u32 - 1));
@@ -67,27 +69,28 @@ impl Front<'_> {
             let Some(step) = spot.step(way * size) else { continue };
             let to = self.input.chart_surface.clamp(xy + step);
             let new = self.input.chart_surface.spot(to);
-            let near = self.near_edges(FrontStep { from: xy, to, p: new.p, size }, FRONT.min_border_distance, Some(a));
+            let at = self.point(to, &new);
+            let near = self.near_edges(FrontStep { from: xy, to: at, size }, FRONT.min_border_distance, Some(a));
             let along = way.reject_from_normalized(new.normal()).normalize_or_zero();
             let far = new.p.distance(pa) > FRONT.max_step_ratio * size || self.is_on_edge(to);
-            if !near && !far && along != DVec3::ZERO && !self.near_node(new.p, size) {
-                self.add(to, new.p, size, along);
+            if !near && !far && along != DVec3::ZERO && !self.near_node(at, size) {
+                self.add(at, size, along);
                 self.open.clear();
             }
         }
     }
 
     /// Whether a tip is too near to an edge of the border that is not its own.
-    fn near_others(&self, xy: DVec2, p: DVec3, size: f64, own: [u32; 2]) -> bool {
+    fn near_others(&self, to: SurfacePoint, size: f64, own: [u32; 2]) -> bool {
         let outline = self.input.outline;
         let middle = 0.5 * (outline.xy[own[0] as usize] + outline.xy[own[1] as usize]);
-        self.border.any(p, FRONT.border_search_radius * size, size, |sample, _| {
+        self.border.any(to, FRONT.border_search_radius * size, size, |sample, _| {
             let edge = self.edges[sample.tag as usize];
             if edge == own {
                 return false;
             }
             let [a, b] = edge.map(|n| n as usize);
-            cross(middle, xy, outline.xy[a], outline.xy[b]) || apart(p, outline.p[a], outline.p[b]) < FRONT.min_border_distance * size
+            cross(middle, to.xy, outline.xy[a], outline.xy[b]) || apart(to.p, outline.p[a], outline.p[b]) < FRONT.min_border_distance * size
         })
     }
 }

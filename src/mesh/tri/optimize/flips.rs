@@ -43,7 +43,9 @@ impl MeshOptimizer<'_> {
             let (x, y) = (x - tip, y - tip);
             x.dot(y) / x.cross(y).length().max(f64::MIN_POSITIVE)
         };
-        cot(a, b, d) + cot(c, b, d) < -PARALLEL && self.convex(quad)
+        let [na, nb, nc, nd] = quad;
+        let keeps = || !self.guards_moves || self.keeps([na, nb, nc], None) && self.keeps([na, nc, nd], None);
+        cot(a, b, d) + cot(c, b, d) < -PARALLEL && self.convex(quad) && keeps()
     }
 
     /// Flips a side if the worse of the two triangles gets better; whether it did.

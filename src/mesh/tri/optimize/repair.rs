@@ -145,7 +145,7 @@ impl MeshOptimizer<'_> {
     }
 
     /// The same of the triangles from a place to the sides of a rim.
-    fn star_keeps(&self, rim: &[u32], node: u32, star: &Star) -> bool {
+    pub(crate) fn star_keeps(&self, rim: &[u32], node: u32, star: &Star) -> bool {
         let n = rim.len();
         (0..n).all(|i| self.keeps([node, rim[i], rim[(i + 1) % n]], Some((star.xy, star.p))))
     }

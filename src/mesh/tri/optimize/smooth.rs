@@ -7,6 +7,7 @@ use crate::base::triangulate_points::NO_TRIANGLE;
 use crate::mesh::chart::parametric_surface::foot_near;
 use crate::mesh::tri::optimize::MeshOptimizer;
 use crate::mesh::tri::optimize_settings::REPAIR;
+use crate::mesh::tri::shape::Star;
 
 impl MeshOptimizer<'_> {
     /// Moves free nodes that wait towards the area-weighted mean of their triangles' centroids, and in the next round their
@@ -65,7 +66,8 @@ impl MeshOptimizer<'_> {
             let (xy, spot) = foot_near(self.chart_surface, self.chart_surface.clamp(xy + way * share), here + step, step.length());
             let p = spot.p;
             // Where rounding has turned a triangle over already, others may not be turned over.
-            if self.rim.worst(xy, p) >= before.clamp(0.0, self.settings.still_quality) {
+            let is_upright = self.rim.worst(xy, p) >= before.clamp(0.0, self.settings.still_quality);
+            if is_upright && (!self.guards_moves || self.star_keeps(&self.ring.node, node, &Star { p, xy, worst: 0.0 })) {
                 self.place(node, xy, p);
                 return true;
             }

@@ -1,0 +1,93 @@
+//! Triangles that cut off a fold: where a surface turns back within a step, sides that are short in space may pass over far more of it.
+//!
+//! Lengths in space do not see that. A face whose triangles meet at sharp angles is made again with a check of each: no place of the surface
+//! over a triangle may be farther from it than half of the size, which is what rows of nodes a size apart keep.
+
+use std::cell::Cell;
+
+use glam::{DVec2, DVec3};
+
+use crate::base::triangulate_points::NO_TRIANGLE;
+use crate::mesh::deviation::point_triangle;
+use crate::mesh::tri::optimize::LimitCheck;
+use crate::mesh::tri::triangle_fit::FaceFit;
+use crate::mesh::tri::triangulation::Triangulation;
+
+/// What steers the check.
+struct FoldSettings {
+    /// Cosine of the angle between the normals of neighbours from which on they may cut off a fold: 60°.
+    min_cosine: f64,
+    /// Largest distance of the surface from a triangle, over the size.
+    max_distance: f64,
+    /// Divisions of a side between places that are looked at.
+    divisions: usize,
+}
+
+const SETTINGS: FoldSettings = FoldSettings { min_cosine: 0.5, max_distance: 0.5, divisions: 4 };
+
+/// Lengths of sides, and folds.
+pub(crate) struct FoldCheck<'a> {
+    pub(crate) fit: &'a FaceFit<'a>,
+    /// Work that was allowed for the triangles so far, over all rounds.
+    pub(crate) allowed: &'a Cell<u64>,
+}
+
+impl FoldCheck<'_> {
+    /// Whether triangles cut off a fold.
+    pub(crate) fn is_needed(&self, triangulation: &Triangulation) -> bool {
+        // Over triangles at a pole (u, v) is not linear.
+        if self.fit.face.sides.iter().any(|side| side.pole.is_some()) {
+            return false;
+        }
+        let up = |t: usize| {
+            let [a, b, c] = triangulation.tri[t].map(|n| triangulation.p[n as usize]);
+            (b - a).cross(c - a).normalize_or_zero()
+        };
+        let normals: Vec<DVec3> = (0..triangulation.tri.len()).map(up).collect();
+        let beside = |t: usize| triangulation.across[t].into_iter().filter(|o| *o != NO_TRIANGLE);
+        let is_sharp = |t: &usize| beside(*t).any(|o| normals[*t].dot(normals[o as usize]) < SETTINGS.min_cosine);
+        (0..normals.len()).filter(is_sharp).any(|t| self.cuts_off(triangulation, triangulation.tri[t], None))
+    }
+
+    /// Whether a place of the surface over a triangle, with its first corner moved to a place, is too far from it.
+    fn cuts_off(&self, triangulation: &Triangulation, corners: [u32; 3], first: Option<(DVec2, DVec3)>) -> bool {
+        let [_, b, c] = corners.map(|n| n as usize);
+        let (a, pa) = first.unwrap_or_else(|| (triangulation.xy[corners[0] as usize], triangulation.p[corners[0] as usize]));
+        let xy = [a, triangulation.xy[b], triangulation.xy[c]].map(|xy| DVec2::from(self.fit.chart.uv(xy)));
+        let p = [pa, triangulation.p[b], triangulation.p[c]];
+        let most = SETTINGS.max_distance * self.fit.longest.inside;
+        let evaluator = self.fit.chart.evaluator();
+        let share = |k: usize| k as f64 / SETTINGS.divisions as f64;
+        let places = (0..=SETTINGS.divisions).flat_map(|i| (0..=SETTINGS.divisions - i).map(move |j| (i, j)));
+        places.into_iter().any(|(i, j)| {
+            let at = xy[0] + (xy[1] - xy[0]) * share(i) + (xy[2] - xy[0]) * share(j);
+            point_triangle::distance(p, evaluator.point(at.x, at.y)) > most
+        })
+    }
+}
+
+impl LimitCheck for FoldCheck<'_> {
+    fn broken(&self, triangulation: &Triangulation, some: &[u32]) -> Vec<u32> {
+        let mut found = self.fit.longest.broken(triangulation, some);
+        found.extend(some.iter().filter(|t| self.cuts_off(triangulation, triangulation.tri[**t as usize], None)));
+        found.sort_unstable();
+        found.dedup();
+        found
+    }
+
+    fn is_per_triangle(&self) -> bool {
+        true
+    }
+
+    fn holds_from_the_start(&self) -> bool {
+        true
+    }
+
+    fn allow_work(&self, triangles: usize) {
+        self.fit.allow_bounds(triangles, self.allowed);
+    }
+
+    fn keeps(&self, triangulation: &Triangulation, corners: [u32; 3], first: Option<(DVec2, DVec3)>) -> bool {
+        !self.cuts_off(triangulation, corners, first)
+    }
+}
