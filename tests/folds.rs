@@ -88,3 +88,12 @@ fn tips_of_folds_are_not_cut_off() {
     }
     assert_eq!(failed, Vec::<String>::new(), "{}", failed.join("\n\n"));
 }
+
+/// Rows of a mapped mesh may pass over a tip: the report says how far it is from them.
+#[test]
+fn the_chord_error_counts_what_rows_cut_off() {
+    for (count, least, most) in [(15, 0.06, 0.16), (14, 0.0, 0.01)] {
+        let (_, _, reported) = mesh(&format!("{WHOLE}\nmesh m of face {{ size: 0.3  on profile {{ count: {count} }} }}\n"));
+        assert!(reported > least && reported < most, "{count} rows: {reported}");
+    }
+}

@@ -9,9 +9,11 @@ use crate::base::par;
 use crate::base::tolerance::Tolerance;
 use crate::mesh::data::face_geometry::{FaceGeometry, FaceNodes};
 use crate::mesh::deviation::bend_tiles::BendTiles;
+use crate::mesh::deviation::cut_off::{self, FaceTriangles};
 use crate::mesh::deviation::measure_grid::{GridList, GridMeasure};
 use crate::mesh::deviation::quadratic::over_sides;
 use crate::mesh::deviation::samples::{Farthest, Largest, beside_pole, bounded, of_triangle};
+use crate::mesh::mapped::grid::Grid;
 use crate::surface::{Evaluator, Surface};
 
 /// What steers the measurement.
@@ -38,13 +40,16 @@ pub fn of_face(surface: &Surface, geometry: &FaceGeometry, triangles: &[[u32; 3]
     match &geometry.nodes {
         FaceNodes::Grid(grid, frame) => {
             let of_grid = GridMeasure::new(surface, grid, frame, (triangles, nodes), tolerance);
-            if grid.straight == (true, true) {
-                return of_grid.largest();
+            let is_straight = grid.straight == (true, true);
+            let of_rows = if is_straight { of_grid.largest() } else { 0.0 };
+            if is_straight && !cut_off::may_fold(surface, grid_range(grid)) {
+                return of_rows;
             }
             let GridList { uv, ids, border, triangles } = of_grid.listed();
             let power_form = surface.power_form();
             let evaluator = Evaluator::new(surface, power_form.as_ref());
-            ListedTriangles { evaluator, uv: &uv, ids: &ids, border, nodes, halves: &triangles, tolerance }.largest()
+            let listed = ListedTriangles { evaluator, uv: &uv, ids: &ids, border, nodes, halves: &triangles, tolerance };
+            listed.with_cut_off(if is_straight { of_rows } else { listed.largest() })
         }
         listed if surface.is_flat() => from_plane(surface, &listed.listed_ids(), nodes, tolerance),
         listed => {
@@ -59,9 +64,17 @@ pub fn of_face(surface: &Surface, geometry: &FaceGeometry, triangles: &[[u32; 3]
             let power_form = surface.power_form();
             let evaluator = Evaluator::new(surface, power_form.as_ref());
             let border = if let FaceNodes::Free(free, _) = listed { free.border } else { uv.len() };
-            ListedTriangles { evaluator, uv: &uv, ids: &ids, border, nodes, halves: &halves, tolerance }.largest()
+            let listed = ListedTriangles { evaluator, uv: &uv, ids: &ids, border, nodes, halves: &halves, tolerance };
+            listed.with_cut_off(listed.largest())
         }
     }
+}
+
+/// The range of (u, v) of a grid.
+fn grid_range(grid: &Grid) -> (DVec2, DVec2) {
+    let (nu, nv) = grid.size();
+    let corners = [(0, 0), (nu, 0), (0, nv), (nu, nv)].map(|(i, j)| DVec2::from(grid.uv(i, j)));
+    corners.into_iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), p| (l.min(p), h.max(p)))
 }
 
 /// Elements on a plane are as far from it as their farthest node.
@@ -88,6 +101,16 @@ struct ListedTriangles<'a> {
 }
 
 impl ListedTriangles<'_> {
+    /// The larger of a distance that was measured from the triangles and of that of folds which they cut off.
+    fn with_cut_off(&self, measured: f64) -> f64 {
+        let range = self.uv.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), at| (l.min((*at).into()), h.max((*at).into())));
+        if !cut_off::may_fold(self.evaluator.surface(), range) {
+            return measured;
+        }
+        let triangles = FaceTriangles { uv: self.uv, ids: self.ids, halves: self.halves, nodes: self.nodes };
+        triangles.largest_cut_off(self.evaluator, measured.max(self.tolerance.rounding)).unwrap_or(measured)
+    }
+
     fn largest(&self) -> f64 {
         let count = self.halves.len();
         if count < SETTINGS.min_triangles {

@@ -4,6 +4,7 @@ pub mod bend_bounds;
 pub mod bend_tiles;
 pub mod certify;
 pub mod curve;
+pub mod cut_off;
 pub mod edge_length;
 pub mod flat_triangle;
 mod heights;
