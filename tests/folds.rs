@@ -1,6 +1,7 @@
 //! Surfaces that turn back within a step, as a wing at its leading edge: nothing is cut off, elements are well shaped and few, and the
 //! chord error is that of the tip as well.
 
+use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -54,7 +55,9 @@ curve profile = spline([(0, 0, 0.02), (1, 0, 0.03), (2, 0, 0), (1, 0, -0.03), (0
 surface face = extrude(profile, by: (0, 3, 0))";
 
 /// Script, settings, largest share of the area that chords may miss, largest chord error (m), least angle (degrees), elements.
-fn cases() -> Vec<(String, &'static str, f64, f64, f64, std::ops::Range<usize>)> {
+type Case = (String, &'static str, f64, f64, f64, Range<usize>);
+
+fn cases() -> Vec<Case> {
     vec![
         (hairpin(0.05), "size: 0.3", 0.003, 0.02, 30.0, 300..700),
         (hairpin(0.02), "size: 0.3", 0.001, 0.01, 30.0, 300..700),
