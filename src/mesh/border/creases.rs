@@ -97,8 +97,8 @@ fn lines(input: &Input, surface: &Surface, outlines: &[Vec<DVec2>]) -> [Vec<Line
     let chord = input.plan.settings.chord_error.map(|chord| chord.0);
     let ends = outlines.iter().flatten().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), p| (l.min(*p), h.max(*p)));
     let corners: Vec<DVec2> = outlines.iter().flat_map(|polygon| corners(polygon)).collect();
-    let mut axis = 0;
-    kinks.map(|mut kinks| {
+    let [us, vs] = kinks;
+    [(0, us), (1, vs)].map(|(axis, mut kinks)| {
         for (fold, room) in folds::along(surface, axis, ends, (size, chord)) {
             let is_kink = |kink: &Line| kink.1.is_none() && (kink.0 - fold).abs() <= room;
             if !kinks.iter().any(is_kink) {
@@ -107,7 +107,6 @@ fn lines(input: &Input, surface: &Surface, outlines: &[Vec<DVec2>]) -> [Vec<Line
                 kinks.push((nearest.map_or(fold, |corner| corner[axis]), Some(room)));
             }
         }
-        axis += 1;
         kinks
     })
 }

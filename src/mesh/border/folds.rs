@@ -5,6 +5,7 @@
 
 use glam::{DVec2, DVec3};
 
+use crate::base::job;
 use crate::base::math::angle_between;
 use crate::surface::Surface;
 
@@ -28,6 +29,8 @@ struct FoldSettings {
     max_turn: f64,
     /// Most times that what is between two places is halved.
     max_halvings: u32,
+    /// Most places on a line: where a surface has no area its normals are noise.
+    max_places: usize,
     /// Largest distance of the folds of lines from each other, over the width.
     max_spread: f64,
 }
@@ -42,6 +45,7 @@ const SETTINGS: FoldSettings = FoldSettings {
     places: 32,
     max_turn: 0.131,
     max_halvings: 24,
+    max_places: 1 << 14,
     max_spread: 0.125,
 };
 
@@ -154,7 +158,9 @@ impl FoldLine<'_> {
         let mut open: Vec<(f64, (DVec3, DVec3), u32)> = (1..=SETTINGS.places).rev().map(|k| (t(k), self.place(t(k)), 0)).collect();
         while let Some((to, (p, normal), halvings)) = open.pop() {
             let turn = if normal == DVec3::ZERO || before.1.1 == DVec3::ZERO { 0.0 } else { angle_between(before.1.1, normal) };
-            if turn > SETTINGS.max_turn && halvings < SETTINGS.max_halvings {
+            job::poll();
+            let has_room = halvings < SETTINGS.max_halvings && found.len() + open.len() < SETTINGS.max_places;
+            if turn > SETTINGS.max_turn && has_room {
                 let middle = 0.5 * (before.0 + to);
                 open.push((to, (p, normal), halvings + 1));
                 open.push((middle, self.place(middle), halvings + 1));

@@ -101,6 +101,11 @@ impl Face {
     pub fn segments(&self) -> impl Iterator<Item = usize> + '_ {
         self.sides.iter().flat_map(|s| s.uses.iter().map(|u| u.segment)).chain(self.lines.iter().copied())
     }
+
+    /// Whether one of its sides is a point.
+    pub fn has_pole(&self) -> bool {
+        self.sides.iter().any(|side| side.pole.is_some())
+    }
 }
 
 /// Faces, segments and where they meet.
@@ -305,5 +310,5 @@ pub(crate) fn closes(face: &Face) -> bool {
     let all = round.len();
     round.sort_unstable();
     round.dedup();
-    face.free && (round.len() < all || face.sides.iter().any(|side| side.pole.is_some()))
+    face.free && (round.len() < all || face.has_pole())
 }

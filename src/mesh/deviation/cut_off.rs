@@ -49,11 +49,13 @@ impl FaceTriangles<'_> {
         let mut far: Vec<(f64, DVec3)> = Vec::new();
         for half in self.sharp() {
             job::poll();
-            far.extend(self.farthest_place(evaluator, half).filter(|place| place.0 > least));
+            let uv = beside_pole(evaluator, half.map(|n| self.uv[n])).map(DVec2::from);
+            far.push(farthest_place(evaluator, uv, self.points(half)));
         }
+        far.retain(|place| place.0 > least);
         far.sort_by(|a, b| b.0.total_cmp(&a.0));
         let mut most = least;
-        for (own, place) in far.into_iter().take(SETTINGS.max_places).take_while(|place| place.0 > least) {
+        for (own, place) in far.into_iter().take(SETTINGS.max_places) {
             if own > most {
                 most = most.max(self.distance(place, most));
             }
@@ -83,20 +85,6 @@ impl FaceTriangles<'_> {
         self.halves.iter().filter(|half| half.iter().any(|n| is_sharp[*n])).copied().collect()
     }
 
-    /// The place of the surface over a triangle that is farthest from it, with the distance.
-    fn farthest_place(&self, evaluator: Evaluator, half: [usize; 3]) -> Option<(f64, DVec3)> {
-        let uv = beside_pole(evaluator, half.map(|n| self.uv[n])).map(DVec2::from);
-        let p = self.points(half);
-        let share = |k: usize| k as f64 / SETTINGS.divisions as f64;
-        let places = (0..=SETTINGS.divisions).flat_map(|i| (0..=SETTINGS.divisions - i).map(move |j| (i, j)));
-        let off = |(i, j): (usize, usize)| {
-            let at = uv[0] + (uv[1] - uv[0]) * share(i) + (uv[2] - uv[0]) * share(j);
-            let there = evaluator.point(at.x, at.y);
-            (point_triangle::distance(p, there), there)
-        };
-        places.map(off).max_by(|a, b| a.0.total_cmp(&b.0))
-    }
-
     /// Distance of a place from the triangles, or something less than `enough`.
     fn distance(&self, place: DVec3, enough: f64) -> f64 {
         let mut nearest = f64::INFINITY;
@@ -113,6 +101,18 @@ impl FaceTriangles<'_> {
         }
         nearest
     }
+}
+
+/// How far the place of the surface over a triangle is from it that is farthest, by samples, model units, and where it is.
+pub fn farthest_place(evaluator: Evaluator, uv: [DVec2; 3], p: [DVec3; 3]) -> (f64, DVec3) {
+    let share = |k: usize| k as f64 / SETTINGS.divisions as f64;
+    let places = (0..=SETTINGS.divisions).flat_map(|i| (0..=SETTINGS.divisions - i).map(move |j| (i, j)));
+    let off = |(i, j): (usize, usize)| {
+        let at = uv[0] + (uv[1] - uv[0]) * share(i) + (uv[2] - uv[0]) * share(j);
+        let there = evaluator.point(at.x, at.y);
+        (point_triangle::distance(p, there), there)
+    };
+    places.map(off).fold((0.0, p[0]), |most, off| if off.0 > most.0 { off } else { most })
 }
 
 /// Whether a surface may turn back on itself between two places of (u, v).

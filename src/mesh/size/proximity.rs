@@ -318,8 +318,7 @@ impl ProximityScan<'_> {
         let surface = self.chart.surface();
         let normal = |xy: DVec2| self.chart.spot(xy).normal();
         // Beside a pole opposite sides are near each other.
-        let has_pole = || self.face.sides.iter().any(|side| side.pole.is_some());
-        if surface.is_flat() || has_pole() || normal(ends[0]).dot(normal(ends[1])) >= 0.0 {
+        if surface.is_flat() || self.face.has_pole() || normal(ends[0]).dot(normal(ends[1])) >= 0.0 {
             return 0.0;
         }
         let [from, to] = ends.map(|xy| self.chart.uv(xy));

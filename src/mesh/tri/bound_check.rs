@@ -30,12 +30,8 @@ impl LimitCheck for BoundCheck<'_> {
     fn broken(&self, triangulation: &Triangulation, some: &[u32]) -> Vec<u32> {
         let mut ratios = self.ratios.borrow_mut();
         ratios.update(self.fit.chart, triangulation, some, &self.fit.limits);
-        let mut found = self.fit.longest.broken(triangulation, some);
-        let over = |t: &u32| ratios.of(*t).worst() > 1.0 && longest_side(triangulation, *t) > self.floor;
-        found.extend(some.iter().copied().filter(over));
-        found.sort_unstable();
-        found.dedup();
-        found
+        let over = |t: u32| ratios.of(t).worst() > 1.0 && longest_side(triangulation, t) > self.floor;
+        self.fit.longest.broken_or(triangulation, some, over)
     }
 
     fn is_per_triangle(&self) -> bool {

@@ -8,7 +8,7 @@ use std::cell::Cell;
 use glam::{DVec2, DVec3};
 
 use crate::base::triangulate_points::NO_TRIANGLE;
-use crate::mesh::deviation::point_triangle;
+use crate::mesh::deviation::cut_off::farthest_place;
 use crate::mesh::tri::optimize::LimitCheck;
 use crate::mesh::tri::triangle_fit::FaceFit;
 use crate::mesh::tri::triangulation::Triangulation;
@@ -19,11 +19,9 @@ struct FoldSettings {
     min_cosine: f64,
     /// Largest distance of the surface from a triangle, over the size.
     max_distance: f64,
-    /// Divisions of a side between places that are looked at.
-    divisions: usize,
 }
 
-const SETTINGS: FoldSettings = FoldSettings { min_cosine: 0.5, max_distance: 0.5, divisions: 4 };
+const SETTINGS: FoldSettings = FoldSettings { min_cosine: 0.5, max_distance: 0.5 };
 
 /// Lengths of sides, and folds.
 pub(crate) struct FoldCheck<'a> {
@@ -36,7 +34,7 @@ impl FoldCheck<'_> {
     /// Whether triangles cut off a fold.
     pub(crate) fn is_needed(&self, triangulation: &Triangulation) -> bool {
         // Over triangles at a pole (u, v) is not linear.
-        if self.fit.face.sides.iter().any(|side| side.pole.is_some()) {
+        if self.fit.face.has_pole() {
             return false;
         }
         let up = |t: usize| {
@@ -55,24 +53,13 @@ impl FoldCheck<'_> {
         let (a, pa) = first.unwrap_or_else(|| (triangulation.xy[corners[0] as usize], triangulation.p[corners[0] as usize]));
         let xy = [a, triangulation.xy[b], triangulation.xy[c]].map(|xy| DVec2::from(self.fit.chart.uv(xy)));
         let p = [pa, triangulation.p[b], triangulation.p[c]];
-        let most = SETTINGS.max_distance * self.fit.longest.inside;
-        let evaluator = self.fit.chart.evaluator();
-        let share = |k: usize| k as f64 / SETTINGS.divisions as f64;
-        let places = (0..=SETTINGS.divisions).flat_map(|i| (0..=SETTINGS.divisions - i).map(move |j| (i, j)));
-        places.into_iter().any(|(i, j)| {
-            let at = xy[0] + (xy[1] - xy[0]) * share(i) + (xy[2] - xy[0]) * share(j);
-            point_triangle::distance(p, evaluator.point(at.x, at.y)) > most
-        })
+        farthest_place(self.fit.chart.evaluator(), xy, p).0 > SETTINGS.max_distance * self.fit.longest.inside
     }
 }
 
 impl LimitCheck for FoldCheck<'_> {
     fn broken(&self, triangulation: &Triangulation, some: &[u32]) -> Vec<u32> {
-        let mut found = self.fit.longest.broken(triangulation, some);
-        found.extend(some.iter().filter(|t| self.cuts_off(triangulation, triangulation.tri[**t as usize], None)));
-        found.sort_unstable();
-        found.dedup();
-        found
+        self.fit.longest.broken_or(triangulation, some, |t| self.cuts_off(triangulation, triangulation.tri[t as usize], None))
     }
 
     fn is_per_triangle(&self) -> bool {

@@ -278,7 +278,7 @@ impl Front<'_> {
 
     /// A point of the surface; where nothing is folded all points face all ways.
     fn point(&self, xy: DVec2, spot: &Spot) -> SurfacePoint {
-        SurfacePoint { p: spot.p, xy, facing: if self.has_folds { Facing::of(spot.normal()) } else { Facing::default() } }
+        SurfacePoint::new(xy, spot, self.has_folds)
     }
 
     fn near_node(&self, p: SurfacePoint, size: f64) -> bool {

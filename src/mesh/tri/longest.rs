@@ -101,6 +101,17 @@ impl<'a> Longest<'a> {
     }
 }
 
+impl Longest<'_> {
+    /// The same, and those that break another limit; ascending.
+    pub(crate) fn broken_or(&self, triangulation: &Triangulation, some: &[u32], breaks: impl Fn(u32) -> bool) -> Vec<u32> {
+        let mut found = self.broken(triangulation, some);
+        found.extend(some.iter().copied().filter(|t| breaks(*t)));
+        found.sort_unstable();
+        found.dedup();
+        found
+    }
+}
+
 /// The longest side of a triangle.
 pub(crate) fn longest_side(triangulation: &Triangulation, t: u32) -> f64 {
     let [a, b, c] = triangulation.tri[t as usize].map(|n| triangulation.p[n as usize]);

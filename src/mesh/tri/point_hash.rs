@@ -2,6 +2,8 @@
 
 use glam::{DVec2, DVec3};
 
+use crate::mesh::chart::parametric_surface::Spot;
+
 const NONE: u32 = u32::MAX;
 /// Levels kept apart: sizes from 2^-LEVELS/2 to 2^LEVELS/2 of the unit.
 const LEVELS: i32 = 64;
@@ -46,6 +48,11 @@ impl SurfacePoint {
     /// Longest way in the chart between points that are near each other, over their largest distance in space: half round a tube it is the
     /// quarter of the length of a circle over its radius.
     const MAX_WAY: f64 = 1.6;
+
+    /// A point of a surface that is folded, or of one whose points face all ways.
+    pub fn new(xy: DVec2, spot: &Spot, is_folded: bool) -> Self {
+        Self { p: spot.p, xy, facing: if is_folded { Facing::of(spot.normal()) } else { Facing::default() } }
+    }
 
     /// Whether a point that is nearer in space than `reach` lies on the other side of a fold.
     fn is_beyond_fold(&self, other: &Self, reach: f64) -> bool {

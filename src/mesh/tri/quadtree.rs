@@ -152,8 +152,7 @@ impl<'a> PlacedCells<'a> {
     fn consider(&mut self, xy: DVec2, side: f64, side_in_chart: DVec2) {
         let outline = self.task.outline;
         let spot = self.task.chart_surface.spot(xy);
-        let p = spot.p;
-        let at = SurfacePoint { p, xy, facing: if self.has_folds { Facing::of(spot.normal()) } else { Facing::default() } };
+        let (p, at) = (spot.p, SurfacePoint::new(xy, &spot, self.has_folds));
         let size = self.task.field.size(xy, p);
         let near = self.border.any(at, FRONT.border_search_radius * size, size, |sample, _| {
             let [a, b] = outline.edge(sample.tag).map(|n| outline.p[n as usize]);
