@@ -25,6 +25,8 @@ limits! {
     pub const DATA_BYTES: u64 = 256 << 20;
     /// Largest coordinate or length of a curve, model units, positive or negative: its fourth power must not overflow.
     pub const COORDINATE: f64 = 1e50;
+    /// Largest knot of a spline, positive or negative; two that differ are no nearer than one over it.
+    pub const KNOT: f64 = 1e50;
     /// Turns of one helix, in either sense: each takes some kilobytes.
     pub const HELIX_TURNS: f64 = 10_000.0;
     /// Members of one list.
@@ -78,3 +80,9 @@ pub const MESH_ELEMENTS_MOST: u64 = 1_000_000_000;
 
 /// Least number of pixels along a side of a picture.
 pub const PICTURE_LEAST: u32 = 16;
+
+/// A knot or a step between two knots that derivatives cannot be computed with: they overflow.
+pub fn knot_beyond(knots: &[f64]) -> Option<f64> {
+    let steps = knots.windows(2).map(|k| k[1] - k[0]).filter(|step| *step > 0.0 && *step < 1.0 / KNOT);
+    knots.iter().copied().filter(|k| k.abs() > KNOT).chain(steps).next()
+}

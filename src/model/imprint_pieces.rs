@@ -17,7 +17,7 @@ use crate::geometry::data::fault::CurveFault;
 use crate::network::{Chain, Network};
 use crate::surface::faults::CutFault;
 use crate::surface::intersect::with_curve::with_curve;
-use crate::surface::{Domain, Nearest, Surface, split, with_loops};
+use crate::surface::{Domain, Nearest, Surface, over_frame, split, with_loops};
 
 /// Places along a curve at which it is compared with another one.
 const SAMPLES: usize = 9;
@@ -52,7 +52,12 @@ impl Model {
                 let near: Vec<usize> = (0..k).filter(|n| hulls[*n].touches(&hull, tolerance.point)).collect();
                 let places = if near.is_empty() { Vec::new() } else { inner_points(&piece, tolerance)? };
                 let on = |nearest: &Nearest| places.iter().all(|p| nearest.at(*p).distance <= tolerance.point);
-                let covered = !places.is_empty() && near.iter().any(|n| on(known.entry(*n).or_insert_with(|| Nearest::new(surface(*n)))));
+                for n in &near {
+                    if !known.contains_key(n) {
+                        known.insert(*n, Nearest::new(&over_frame(surface(*n), tolerance)?));
+                    }
+                }
+                let covered = !places.is_empty() && near.iter().any(|n| known.get(n).is_some_and(on));
                 if !covered {
                     out.push(piece);
                     continue;

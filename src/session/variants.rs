@@ -34,26 +34,29 @@ pub fn rows(file: &str, bytes: &[u8], sets: &[(String, String)]) -> Result<Vec<R
     let column = |at: Option<u64>| at.map_or_else(String::new, |column| format!(", column {column}"));
     let table = read(bytes, &reading).map_err(|at| format!("line {}{}: {}", at.line, column(at.column), at.what))?;
     let header = table.header.unwrap_or_default();
-    if let Some((_, name)) = header.iter().enumerate().find(|(i, name)| header[..*i].contains(name)) {
+    let mut known = BTreeSet::new();
+    if let Some(name) = header.iter().find(|name| !known.insert(name.as_str())) {
         return Err(format!("the column {name:?} is given twice"));
     }
     if let Some((name, _)) = sets.iter().find(|(name, _)| header.contains(name)) {
         return Err(format!("`{name}` is set by the table and by --set"));
     }
     let places = CellPlaces::new(bytes);
-    let (file, text, head): (Arc<str>, Arc<str>, _) = (file.into(), places.text.into(), places.first_line());
+    let (file, text): (Arc<str>, Arc<str>) = (file.into(), places.text.into());
+    let heads = places.row(places.first_line());
     let mut names = BTreeSet::new();
     let mut rows = Vec::new();
     for (number, cells) in table.rows.iter().enumerate() {
         let line = table.lines.get(number).copied().unwrap_or(0);
         let at = TableRow { file: file.clone(), text: text.clone(), number: number + 1, cells: Vec::new() };
+        let stand = places.row(line);
         let mut row = Row { name: format!("{:03}", number + 1), sets: sets.to_vec(), at };
         for (k, (column, cell)) in header.iter().zip(cells).enumerate() {
             let Some(text) = literal(cell) else { continue };
             if column == NAME {
                 row.name = text;
             } else {
-                let (head, cell) = (span(places.cell(head, k)), span(places.cell(line, k)));
+                let (head, cell) = (span(heads.cell(k)), span(stand.cell(k)));
                 row.at.cells.push(SetCell { name: column.clone(), column: k + 1, head, cell });
                 row.sets.push((column.clone(), text));
             }

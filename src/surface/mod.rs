@@ -67,4 +67,4 @@ pub use crate::surface::swept::revolve::{axis_of, revolve};
 pub use crate::surface::trims::divide::{divide, split};
 pub use crate::surface::trims::outlined::{Doubt, Ground, Outlined, outlined};
 pub use crate::surface::trims::project::{Way, project};
-pub use crate::surface::trims::trim::{trim, with_loops};
+pub use crate::surface::trims::trim::{over_frame, trim, with_loops};

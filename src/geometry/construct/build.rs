@@ -8,7 +8,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use crate::base::fault::{LengthRange, Result, ValueFault};
-use crate::base::limits::COORDINATE;
+use crate::base::limits::{COORDINATE, knot_beyond};
 use crate::base::math;
 use crate::base::origin::Origin;
 use crate::base::tolerance::{EPSILON, NUDGE, PARALLEL};
@@ -267,6 +267,9 @@ pub(crate) fn check_knots(knots: &[f64], points: usize, degree: usize, of: Origi
     }
     if let Some(i) = knots.windows(2).position(|x| x[1] < x[0]) {
         return fault(KnotFault::Decreasing { index: i + 1, pair: (knots[i], knots[i + 1]) });
+    }
+    if let Some(found) = knot_beyond(knots) {
+        return fault(KnotFault::Beyond { found });
     }
     let (first, last) = (knots[degree], knots[points]);
     if first == last {

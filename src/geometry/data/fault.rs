@@ -36,6 +36,11 @@ pub enum KnotFault {
         /// Degree given.
         degree: usize,
     },
+    /// A knot, or a step between two, that cannot be computed with.
+    Beyond {
+        /// Its value.
+        found: f64,
+    },
     /// First and last knot of the domain are equal.
     EmptyDomain {
         /// Their value.
@@ -274,6 +279,12 @@ fn knots(what: KnotFault, name: &str) -> Report {
                 .label(Subject::Argument("knots"), format!("{given} given"))
                 .note("points + degree + 1 knots, the outer ones repeated where the curve is to start and end at its poles")
         }
+        KnotFault::Beyond { found } if found.abs() < 1.0 => Report::new(format!("two knots of {name} are only {} apart", real(found)))
+            .label(Subject::Argument("knots"), "too little to compute with")
+            .help("make them equal, or set the knots farther apart: only their proportions matter"),
+        KnotFault::Beyond { found } => Report::new(format!("the knots of {name} reach {}", real(found)))
+            .label(Subject::Argument("knots"), "too large to compute with")
+            .help("make them smaller: only their proportions matter"),
         KnotFault::EmptyDomain { knot } => Report::new(format!("the domain of {name} is empty: it starts and ends at {knot}"))
             .label(Subject::Argument("knots"), "no two different knots in the middle"),
     }

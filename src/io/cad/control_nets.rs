@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3, DVec4};
 
 use crate::base::bbox::Box3;
+use crate::base::limits;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::curves::curve::Shape;
@@ -135,6 +136,9 @@ fn unit(knots: &[f64]) -> Vec<f64> {
 fn check_knots(knots: &[f64], points: usize, degree: usize) -> Result<(), Defect> {
     if let Some(k) = knots.windows(2).position(|w| w[1] < w[0]) {
         return Err(defect(format!("knots must not decrease: {} is followed by {}", knots[k], knots[k + 1])));
+    }
+    if let Some(found) = limits::knot_beyond(knots) {
+        return Err(defect(format!("its knots cannot be computed with: one, or a step between two, is {found:e}")));
     }
     let (first, last) = (knots[degree], knots[points]);
     if first >= last {

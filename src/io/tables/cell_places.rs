@@ -14,6 +14,20 @@ pub struct CellPlaces<'a> {
     lines: Vec<usize>,
 }
 
+/// Where the cells of one line stand.
+#[derive(Clone, Debug)]
+pub struct RowPlaces {
+    cells: Vec<Range<usize>>,
+    whole: Range<usize>,
+}
+
+impl RowPlaces {
+    /// One of them; the whole line where it has no such cell.
+    pub fn cell(&self, column: usize) -> Range<usize> {
+        self.cells.get(column).unwrap_or(&self.whole).clone()
+    }
+}
+
 impl<'a> CellPlaces<'a> {
     /// Those of a file that was read as a csv.
     pub fn new(bytes: &'a [u8]) -> Self {
@@ -28,25 +42,27 @@ impl<'a> CellPlaces<'a> {
         filled.map_or(1, |k| k as u64 + 1)
     }
 
-    /// Where a cell of a line stands, quotes included, blanks around it not; the whole line where it has no such cell.
-    pub fn cell(&self, line: u64, column: usize) -> Range<usize> {
+    /// Where the cells of a line stand, quotes included, blanks around them not, and the whole line; read once, however many they are.
+    pub fn row(&self, line: u64) -> RowPlaces {
         let index = usize::try_from(line).unwrap_or(1).saturating_sub(1);
         let start = self.lines.get(index).copied().unwrap_or(0);
-        let rest = &self.text[start..];
-        let (mut quoted, mut from, mut k) = (false, 0, 0);
-        for (at, c) in rest.char_indices() {
+        let (mut quoted, mut from, mut end) = (false, start, self.text.len());
+        let mut cells = Vec::new();
+        for (at, c) in self.text[start..].char_indices() {
             quoted ^= c == '"';
-            if !quoted && (c == self.separator || matches!(c, '\n' | '#')) {
-                if k == column {
-                    return trimmed(self.text, start + from..start + at);
-                }
-                if c != self.separator {
-                    return trimmed(self.text, start..start + at);
-                }
-                (k, from) = (k + 1, at + c.len_utf8());
+            if quoted {
+                continue;
+            }
+            if c == self.separator {
+                cells.push(trimmed(self.text, from..start + at));
+                from = start + at + c.len_utf8();
+            } else if matches!(c, '\n' | '#') {
+                end = start + at;
+                break;
             }
         }
-        trimmed(self.text, if k == column { start + from } else { start }..self.text.len())
+        cells.push(trimmed(self.text, from..end));
+        RowPlaces { cells, whole: trimmed(self.text, start..end) }
     }
 }
 
@@ -65,7 +81,7 @@ mod tests {
     fn cells_are_found() {
         let text = "# sizes\n\nname ; width [mm];n\n\"a;b\"; 80 ;4 # high\nlast;;7";
         let places = CellPlaces::new(text.as_bytes());
-        let cell = |line, column| &text[places.cell(line, column)];
+        let cell = |line, column| &text[places.row(line).cell(column)];
         assert_eq!(places.first_line(), 3);
         assert_eq!([cell(3, 0), cell(3, 1), cell(3, 2)], ["name", "width [mm]", "n"]);
         assert_eq!([cell(4, 0), cell(4, 1), cell(4, 2)], ["\"a;b\"", "80", "4"]);

@@ -1,5 +1,7 @@
 //! Cells, columns and rows of a table from their text.
 
+use std::collections::BTreeMap;
+
 use crate::base::limits;
 use crate::base::text::parse_real;
 use crate::io::files::fault::Malformed;
@@ -42,6 +44,7 @@ pub(crate) type Columns = (Vec<String>, Vec<Option<String>>);
 
 pub(crate) fn columns(cells: &[String], line: u64, is_unit: &dyn Fn(&str) -> bool) -> Result<Columns, Malformed> {
     let (mut names, mut units): Columns = (Vec::new(), Vec::new());
+    let mut known: BTreeMap<&str, usize> = BTreeMap::new();
     for (k, text) in cells.iter().enumerate() {
         let text = text.trim();
         let split = text.strip_suffix(']').and_then(|head| head.rsplit_once('[')).map(|(name, unit)| (name.trim(), unit.trim()));
@@ -51,7 +54,7 @@ pub(crate) fn columns(cells: &[String], line: u64, is_unit: &dyn Fn(&str) -> boo
             _ => (text, None),
         };
         if !name.is_empty()
-            && let Some(first) = names.iter().position(|known| known == name)
+            && let Some(first) = known.insert(name, k)
         {
             let what = format!("two columns are called `{name}`: {} and {}", first + 1, k + 1);
             return Err(Malformed::at(line, k as u64 + 1, what));

@@ -12,6 +12,7 @@ use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
 use crate::lang::eval::machine::{CallFrame, Code, Gather, Site, Word};
 use crate::lang::eval::module::State;
+use crate::lang::eval::reach::given_beyond;
 use crate::lang::eval::std;
 use crate::lang::eval::std::Builtin;
 use crate::lang::syntax::ast::{Arg, DeclarationKind, ExprId, FnParam, Keyword};
@@ -122,7 +123,10 @@ impl Cx<'_> {
         let values = self.bind(code, id, builtin, first, args)?;
         self.machine.site.expr = id;
         let budget = self.machine.budget.clone();
-        let called = budget.within(|| (builtin.call)(self, values));
+        let called = match given_beyond(builtin, &values) {
+            Some(fault) => Ok(Err(fault.into())),
+            None => budget.within(|| (builtin.call)(self, values)),
+        };
         match called.unwrap_or_else(|Exceeded| Err(ValueFault::Work.into())) {
             Ok(value) => {
                 if self.tolerance.is_none()
@@ -133,6 +137,7 @@ impl Cx<'_> {
                     }
                 }
                 self.machine.site.expr = id;
+                self.made_in_reach(code, id, builtin, &value)?;
                 self.made_by_builtin(code, id, &value)?;
                 self.finite_result(code, id, value)
             }

@@ -28,6 +28,7 @@ pub mod misspelt;
 pub mod module;
 pub mod operators;
 pub mod pipeline;
+pub mod reach;
 pub mod room;
 pub mod scene;
 pub mod show;

@@ -177,6 +177,7 @@ const ANY: &[Bound] = &[];
 pub const POSITIVE: &[Bound] = &[(|x| x > 0.0, "more than 0")];
 const NOT_NEGATIVE: &[Bound] = &[(|x| x >= 0.0, "0 or more")];
 const ABOVE_ONE: &[Bound] = &[(|x| x > 1.0, "more than 1")];
+const RATIO: &[Bound] = &[(|x| x > 0.0, "more than 0"), (|x| x * 1e100 >= 1.0, "at least 10^-100"), (|x| x <= 1e100, "at most 10^100")];
 const STEPS: &[Bound] = &[(|x| x >= 1.0, "at least 1"), (|x| x <= 1e8, "at most 10^8")];
 const ORDERS: &[Bound] = &[(|x| x == 1.0 || x == 2.0, "1 or 2")];
 
@@ -241,7 +242,7 @@ mesh_settings! {
         /// Target edge length here.
         size: f64, Takes::Size, POSITIVE, "", ["mesh::size::segment_rules::SegmentRules", "mesh::size::face_settings::apply_rules"];
         /// Last step over first step along the curve.
-        bias: f64, Takes::Ratio, POSITIVE, "", ["mesh::size::segment_rules::SegmentRules"];
+        bias: f64, Takes::Ratio, RATIO, "", ["mesh::size::segment_rules::SegmentRules"];
         /// Kind of elements of these faces.
         elements: Elements, Takes::Word(Elements::WORDS), ANY, "", ["mesh::size::face_settings::apply_rules"];
         /// How these faces are meshed, by the words of the mesh's own `method`.

@@ -67,7 +67,7 @@ fn borders(face: &Surface) -> Option<Vec<Chain>> {
 }
 
 /// Whether its tangents are the same everywhere.
-fn is_flat(face: &Surface) -> bool {
+pub(crate) fn is_flat(face: &Surface) -> bool {
     if face.is_flat() {
         return true;
     }

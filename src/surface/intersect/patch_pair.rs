@@ -10,6 +10,7 @@ use glam::DVec3;
 use crate::base::bbox::Box3;
 use crate::base::job;
 use crate::surface::closest::foot::FootSearch;
+use crate::surface::intersect::known_curves::KnownCurve;
 use crate::surface::intersect::march::Branch;
 use crate::surface::intersect::pair::{Pair, Spot};
 use crate::surface::intersect::sheet::{Cell, Sheet};
@@ -73,13 +74,15 @@ struct PairSearch<'a> {
     touched: Box3,
     common: CommonPlaces,
     looked_at: usize,
+    /// Curves on both that need no search.
+    known: &'a [KnownCurve],
 }
 
 /// The lines in which two patches meet, and where they touch.
-pub(crate) fn common(a: &mut Sheet, b: &mut Sheet, point: f64, long: f64) -> Result<CommonPlaces, Stopped> {
+pub(crate) fn common(a: &mut Sheet, b: &mut Sheet, known: &[KnownCurve], point: f64, long: f64) -> Result<CommonPlaces, Stopped> {
     let size = a.bounds().diagonal().min(b.bounds().diagonal());
     let (roots_a, roots_b) = (a.roots.clone(), b.roots.clone());
-    let mut search = PairSearch { a, b, point, size, long, touched: Box3::EMPTY, common: CommonPlaces::default(), looked_at: 0 };
+    let mut search = PairSearch { a, b, point, size, long, touched: Box3::EMPTY, common: CommonPlaces::default(), looked_at: 0, known };
     for i in roots_a {
         for j in &roots_b {
             job::poll();
@@ -103,7 +106,7 @@ impl PairSearch<'_> {
         // Flat cells that part by no more than a few tolerances run along each other.
         let slow = fine && x.normal.cross(y.normal).length() * x.reach().min(y.reach()) <= SEARCH.divergence_tolerances * self.point;
         if !slow && crosses(x, y) {
-            if apart(x, y, SEARCH.exact_share * self.point) || self.settled(i, j)? {
+            if apart(x, y, SEARCH.exact_share * self.point) || self.known.iter().any(|known| known.passes(x, y)) || self.settled(i, j)? {
                 return Ok(());
             }
         } else if fine {

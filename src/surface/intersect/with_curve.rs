@@ -17,7 +17,7 @@ use crate::surface::data::kind::Domain;
 use crate::surface::intersect::curve_patch::{Contact, CurveTouch, contacts};
 use crate::surface::intersect::sheet::{Patch, Sheet, grounded, patches};
 use crate::surface::rails::side::Side;
-use crate::surface::trims::trim::with_loops;
+use crate::surface::trims::trim::over_frame;
 
 /// A meeting of a curve and a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,7 +67,8 @@ pub fn with_curve(chain: &Chain, surfaces: &[Surface], tolerance: &Tolerance) ->
 
 fn with_one(chain: &Chain, surface: &Surface, tolerance: &Tolerance) -> Result<Vec<SurfaceMeeting>> {
     let curve = chain.to_curve()?;
-    let surface = &with_loops(surface, tolerance)?;
+    // A plane is searched over its own frame: the map of a triangle folds at a corner.
+    let (mapped, surface) = (surface, &over_frame(surface, tolerance)?);
     let ground = grounded(surface, curve.bbox());
     let mut found: Vec<Contact> = Vec::new();
     for patch in patches(&ground) {
@@ -101,6 +102,9 @@ fn with_one(chain: &Chain, surface: &Surface, tolerance: &Tolerance) -> Result<V
         }
     }
     out.sort_by(|a, b| a.f.total_cmp(&b.f));
+    if surface.domain() != mapped.domain() {
+        out.iter_mut().for_each(|m| m.uv = closest(mapped, m.point).uv);
+    }
     Ok(out)
 }
 

@@ -19,11 +19,13 @@ use crate::surface::data::kind::Domain;
 use crate::surface::faults::CrossingFault;
 use crate::surface::intersect::coplanar::{Coplanar, overlap};
 use crate::surface::intersect::join_curves::{self, STRAIGHT};
+use crate::surface::intersect::known_curves::KnownCurve;
 use crate::surface::intersect::pair::Pair;
 use crate::surface::intersect::patch_pair::{Stopped, common};
+use crate::surface::intersect::planes::flat_faces;
 use crate::surface::intersect::sheet::{Sheet, patches, widely_grounded};
 use crate::surface::intersect::with_curve::{kept_intervals, long};
-use crate::surface::trims::trim::with_loops;
+use crate::surface::trims::trim::over_frame;
 
 /// What two sets of surfaces have in common.
 #[derive(Clone, Debug, Default)]
@@ -79,7 +81,7 @@ fn lexical(a: DVec3, b: DVec3) -> std::cmp::Ordering {
 
 /// Curves and touches of two surfaces.
 fn of_two(a: &Surface, b: &Surface, origin: Origin, tolerance: &Tolerance) -> Result<(Vec<Curve>, Vec<DVec3>)> {
-    let (a, b) = (&with_loops(a, tolerance)?, &with_loops(b, tolerance)?);
+    let (a, b) = (&over_frame(a, tolerance)?, &over_frame(b, tolerance)?);
     let reach = |s: &Surface| (s.ground() != Domain::Unbounded).then(|| s.hull());
     let (box_a, box_b) = match (reach(a), reach(b)) {
         (Some(x), Some(y)) => (x, y),
@@ -90,18 +92,40 @@ fn of_two(a: &Surface, b: &Surface, origin: Origin, tolerance: &Tolerance) -> Re
     if !box_a.touches(&box_b, tolerance.point) {
         return Ok((Vec::new(), Vec::new()));
     }
+    if let Some(lines) = flat_faces([a, b], [box_a, box_b], origin, tolerance)? {
+        let mut kept = Vec::new();
+        for line in lines.curves {
+            kept.extend(kept_parts(line, [a, b], tolerance)?);
+        }
+        return Ok((kept, lines.touches));
+    }
+    let (curves, touches) = searched([a, b], [box_a, box_b], origin, tolerance)?;
+    let mut kept = Vec::new();
+    for curve in curves {
+        kept.extend(kept_parts(curve, [a, b], tolerance)?);
+    }
+    Ok((kept, touches))
+}
+
+/// The curves in which the grounds of two surfaces meet, not yet cut at their loops, and touches, by subdivision.
+fn searched([a, b]: [&Surface; 2], [box_a, box_b]: [Box3; 2], origin: Origin, tolerance: &Tolerance) -> Result<(Vec<Curve>, Vec<DVec3>)> {
     let (mut sheets_a, mut sheets_b) = (sheets(&widely_grounded(a, box_b)), sheets(&widely_grounded(b, box_a)));
     let lost =
         |at: DVec3| Fault::from(CurveFault::NotConverged { of: origin, what: "the curve in which the surfaces meet".to_owned(), at });
     let along = |at: DVec3| Fault::from(CrossingFault::RunAlong { a: a.origin(), b: b.origin(), at, tolerance: tolerance.point });
+    let known_curves = KnownCurve::between(a, b, tolerance)?;
     let (mut curves, mut touches, mut coplanar) = (Vec::new(), Vec::new(), None);
+    for known in &known_curves {
+        curves.push(known.chain.to_curve()?.with_origin(origin));
+    }
+    let on_known = |at: DVec3, room: f64| known_curves.iter().any(|known| known.chain.closest(at).2 <= room);
     for x in &mut sheets_a {
         for y in &mut sheets_b {
             job::poll();
             if !x.bounds().touches(&y.bounds(), tolerance.point) {
                 continue;
             }
-            let found = common(x, y, tolerance.point, long(tolerance, f64::INFINITY)).map_err(|stopped| match stopped {
+            let found = common(x, y, &known_curves, tolerance.point, long(tolerance, f64::INFINITY)).map_err(|stopped| match stopped {
                 Stopped::Along(at) => along(at),
                 Stopped::Lost(at) => lost(at),
             })?;
@@ -115,7 +139,7 @@ fn of_two(a: &Surface, b: &Surface, origin: Origin, tolerance: &Tolerance) -> Re
                 let at = extent.center();
                 let known =
                     own.iter().any(|c: &Curve| Chain::of_curve(c).closest(at).2 <= extent.diagonal() + long(tolerance, extent.diagonal()));
-                if known {
+                if known || on_known(at, extent.diagonal() + long(tolerance, extent.diagonal())) {
                     continue;
                 }
                 if extent.diagonal() > long(tolerance, f64::INFINITY) {
@@ -134,11 +158,7 @@ fn of_two(a: &Surface, b: &Surface, origin: Origin, tolerance: &Tolerance) -> Re
             curves.extend(own);
         }
     }
-    let mut kept = Vec::new();
-    for curve in curves {
-        kept.extend(kept_parts(curve, [a, b], tolerance)?);
-    }
-    Ok((kept, touches))
+    Ok((curves, touches))
 }
 
 fn sheets(ground: &Surface) -> Vec<Sheet> {

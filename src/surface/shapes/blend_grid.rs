@@ -34,7 +34,7 @@ impl Blend {
         let own: Vec<DVec3> =
             (0..rows.along_v.len()).map(|i| b.iter().fold(rows.along_v[i][k], |f, (j, w)| f - self.corner(i, j) * w[0])).collect();
         match (curves.as_slice(), own.is_empty()) {
-            ([(g0, w0), (g1, w1)], false) if columns.active == 2 => {
+            ([(g0, w0), (g1, w1)], false) if columns.paired => {
                 for run in &columns.runs {
                     let (f0, step) = (own[run.first], own[run.first + 1] - own[run.first]);
                     let range = run.from..run.to;
@@ -80,9 +80,10 @@ impl Blend {
 
 /// Everything of a grid that depends on u alone.
 struct Columns {
-    active: usize,
+    /// Two terms take part along u and two along v, at every parameter: columns have no other weights than `second`.
+    paired: bool,
     weights: Vec<Weights>,
-    /// With two active curves: the weight of the second one, and runs of columns between the same two curves.
+    /// Of pairs: the weight of the second one, and runs of columns between the same two curves.
     second: Vec<f64>,
     runs: Vec<ColumnRun>,
     along_u: Vec<Vec<DVec3>>,
@@ -96,11 +97,11 @@ struct ColumnRun {
 
 impl Columns {
     fn new(blend: &Blend, us: &[f64], rows: &[Weights]) -> Self {
-        let active = blend.axes().0.active();
+        let paired = blend.axes().0.active() == 2 && blend.axes().1.active() == 2;
         let (mut weights, mut second, mut runs) = (Vec::new(), Vec::new(), Vec::<ColumnRun>::new());
         for (c, &u) in us.iter().enumerate() {
             let a = blend.axes().0.weights(u, OneSided::After);
-            if active == 2 {
+            if paired {
                 second.push(a.values()[1][0]);
                 match runs.last_mut() {
                     Some(run) if run.first == a.cell() => run.to = c + 1,
@@ -111,7 +112,7 @@ impl Columns {
             }
         }
         let along_u = asked_terms(blend.axes().1, blend.along_u().len(), rows, |j| blend.along_u()[j].points(us));
-        Self { active, weights, second, runs, along_u }
+        Self { paired, weights, second, runs, along_u }
     }
 }
 

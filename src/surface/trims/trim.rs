@@ -68,6 +68,15 @@ pub fn with_loops(surface: &Surface, tolerance: &Tolerance) -> Result<Surface> {
     if bare { trim(surface, &[], &[], surface.origin(), tolerance) } else { Ok(surface.clone()) }
 }
 
+/// A bounded plane over its own frame, where the map of a triangle would fold at a corner, with its loops in (u, v); any other surface
+/// as [`with_loops`] has it, and failing as that does.
+pub fn over_frame(surface: &Surface, tolerance: &Tolerance) -> Result<Surface> {
+    if surface.is_flat() {
+        return with_loops(surface, tolerance);
+    }
+    with_loops(&plane::unmapped(surface, tolerance)?, tolerance)
+}
+
 fn goes_round(base: &Surface, chains: &[Chain], trimming: Origin) -> Fault {
     let of = chains.first().map_or(trimming, Chain::origin);
     let at = chains.first().map_or(DVec3::ZERO, Chain::start);

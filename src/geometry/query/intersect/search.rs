@@ -107,9 +107,9 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Bound of the turning before each piece and, last, of the whole curve, corners included.
-    fn turning(&self) -> Vec<f64> {
-        let mut turned = vec![0.0];
+    /// Bounds of the turning from the start of the curve to the start of each piece and to its end, corners before these included.
+    fn turning(&self) -> Vec<(f64, f64)> {
+        let (mut turned, mut start) = (Vec::new(), 0.0);
         let pieces = &self.a.pieces.pieces;
         for (k, piece) in pieces.iter().enumerate() {
             let within = (piece.node.t.1 - piece.node.t.0) * piece.rates.turn;
@@ -123,15 +123,16 @@ impl<'a> Search<'a> {
                 }
                 _ => 0.0,
             };
-            // A corner counts from the piece before it on.
-            turned.push(turned[k] + within + if corner.is_finite() { corner } else { std::f64::consts::PI });
+            turned.push((start, start + within));
+            start += within + if corner.is_finite() { corner } else { std::f64::consts::PI };
         }
         turned
     }
 
-    fn descend_later(&mut self, i: usize, turned: &[f64], y: (usize, usize, usize)) {
+    fn descend_later(&mut self, i: usize, turned: &[(f64, f64)], y: (usize, usize, usize)) {
         let pieces = self.a.pieces;
-        let enough = turned[y.2] - turned[i] >= std::f64::consts::PI * (1.0 - NEWTON_STEP);
+        // A corner after the later piece lies between no places of the two.
+        let enough = turned[y.2 - 1].1 - turned[i].0 >= std::f64::consts::PI * (1.0 - NEWTON_STEP);
         if y.2 <= i + 1 || !enough || !pieces.pieces[i].node.bounds().touches(pieces.bounds(y.0), self.point) {
             return;
         }
@@ -184,7 +185,7 @@ impl<'a> Search<'a> {
         let bulges = x.bulge + y.bulge;
         let reach = bulges + self.point;
         // Also when the numbers have run out of range and compare with nothing.
-        if apart > reach * reach || apart.is_nan() || reach.is_nan() {
+        if apart > reach * reach || apart.is_nan() || !reach.is_finite() {
             return;
         }
         if self.looked_at > MOST_PAIRS {

@@ -1,0 +1,119 @@
+//! Borders of one face that lie on another one: where the faces cross along such a border it is the curve in which they meet, and
+//! nothing is searched beside it, where they may miss each other by less than the tolerance.
+
+use glam::DVec2;
+
+use crate::base::fault::Result;
+use crate::base::math;
+use crate::base::tolerance::Tolerance;
+use crate::network::Chain;
+use crate::surface::closest::nearest::Nearest;
+use crate::surface::core::surface::Surface;
+use crate::surface::data::breaks::chain_breaks;
+use crate::surface::data::kind::Domain;
+use crate::surface::intersect::sheet::{Cell, widely_grounded};
+use crate::surface::intersect::with_curve::with_curve;
+use crate::surface::rails::side::{Side, between};
+use crate::surface::trims::trim_loop::shifts;
+
+/// Places at which a border is compared with the other face, before it is followed.
+const PROBES: [f64; 5] = [0.03, 0.27, 0.4873, 0.74, 0.97];
+/// Faces cross along a border where they do so at this angle at least, radians.
+const CROSSING: f64 = 0.05;
+/// Steps of a border between two breaks.
+const STEPS: usize = 32;
+/// Places this share of a cell beyond its sides are in it.
+const SLACK: f64 = 1.0 / 64.0;
+
+/// A curve that lies on both of two surfaces, with places in the (u, v) of each.
+#[derive(Clone, Debug)]
+pub(crate) struct KnownCurve {
+    pub chain: Chain,
+    places: Vec<[DVec2; 2]>,
+    /// Whole turns by which places may be moved on each surface.
+    turns: [Vec<DVec2>; 2],
+}
+
+impl KnownCurve {
+    /// The borders of two faces that lie on the other one, all of each, where the faces cross along them.
+    pub fn between(a: &Surface, b: &Surface, tolerance: &Tolerance) -> Result<Vec<Self>> {
+        let mut found: Vec<Self> = Vec::new();
+        if [a, b].iter().any(|face| face.ground() == Domain::Unbounded) {
+            return Ok(found);
+        }
+        let grounds = [a, b].map(|face| widely_grounded(face, face.hull()));
+        let nearest = [Nearest::new(&grounds[0]), Nearest::new(&grounds[1])];
+        for (own, other) in [(0, 1), (1, 0)] {
+            let face = [a, b][own];
+            let reach = grounds[other].hull();
+            for k in 0..face.n_sides() {
+                let Side::Chain { chain, from, to } = face.side(k) else { continue };
+                if !reach.touches(&chain.bbox(), tolerance.point) {
+                    continue;
+                }
+                let chain = between(&chain, from, to, tolerance)?;
+                let crosses = |f: &f64| {
+                    let p = chain.point(*f);
+                    let (here, there) = (nearest[own].at(p).uv, nearest[other].at(p));
+                    let normals = (grounds[own].normal(here.0, here.1), grounds[other].normal(there.uv.0, there.uv.1));
+                    let angle = math::angle_between(normals.0, normals.1);
+                    there.distance <= tolerance.point && angle.min(std::f64::consts::PI - angle) >= CROSSING
+                };
+                if !PROBES.iter().all(crosses) || found.iter().any(|known| known.runs_along(&chain, tolerance)) {
+                    continue;
+                }
+                let runs = with_curve(&chain, std::slice::from_ref(&grounds[other]), tolerance)?;
+                let near = tolerance.point / chain.length();
+                if !runs.iter().any(|run| run.f <= near && run.overlap_end.is_some_and(|to| to >= 1.0 - near)) {
+                    continue;
+                }
+                let stops = [vec![0.0], chain_breaks(&chain), vec![1.0]].concat();
+                let steps = stops.windows(2).flat_map(|w| (0..STEPS).map(move |k| w[0] + (w[1] - w[0]) * k as f64 / STEPS as f64));
+                let place = |f: f64| [0, 1].map(|n: usize| DVec2::from(nearest[n].at(chain.point(f)).uv));
+                let places = steps.chain([1.0]).map(place).collect();
+                found.push(Self { chain, places, turns: [shifts(a), shifts(b)] });
+            }
+        }
+        Ok(found)
+    }
+
+    fn runs_along(&self, chain: &Chain, tolerance: &Tolerance) -> bool {
+        PROBES.iter().all(|f| self.chain.closest(chain.point(*f)).2 <= 2.0 * tolerance.point)
+    }
+
+    /// Whether it passes through two cells, one of each surface.
+    pub fn passes(&self, x: &Cell, y: &Cell) -> bool {
+        self.turns[0].iter().any(|by| {
+            self.turns[1].iter().any(|and| {
+                self.places.windows(2).any(|w| {
+                    let own = within([w[0][0] + *by, w[1][0] + *by], x);
+                    own.is_some_and(|own| {
+                        within([w[0][1] + *and, w[1][1] + *and], y).is_some_and(|other| own.0.max(other.0) <= own.1.min(other.1))
+                    })
+                })
+            })
+        })
+    }
+}
+
+/// The shares of a short straight way in (u, v) that lie in a cell. A way round the surface is none.
+fn within([from, to]: [DVec2; 2], cell: &Cell) -> Option<(f64, f64)> {
+    let step = to - from;
+    if step.abs().max_element() > 0.5 {
+        return None;
+    }
+    let (mut low, mut high) = (0.0_f64, 1.0_f64);
+    for (at, rate, (first, last)) in [(from.x, step.x, cell.u), (from.y, step.y, cell.v)] {
+        let room = (last - first) * SLACK;
+        let (first, last) = (first - room - at, last + room - at);
+        if rate == 0.0 {
+            if first > 0.0 || last < 0.0 {
+                return None;
+            }
+            continue;
+        }
+        let (s, t) = (first / rate, last / rate);
+        (low, high) = (low.max(s.min(t)), high.min(s.max(t)));
+    }
+    (low <= high).then_some((low, high))
+}
