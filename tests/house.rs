@@ -101,7 +101,7 @@ const CEILINGS: &[(&str, usize)] = &[
     ("base", 4_800),
     ("geometry", 6_450),
     ("network", 5_150),
-    ("surface", 30_650),
+    ("surface", 30_500),
     ("model", 7_100),
     ("mesh", 34_700),
     ("hydrostatics", 2_300),

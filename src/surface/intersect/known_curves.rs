@@ -1,7 +1,7 @@
-//! Borders of one face that lie on another one: where the faces cross along such a border it is the curve in which they meet, and
-//! nothing is searched beside it, where they may miss each other by less than the tolerance.
+//! Borders of one face that lie on another one. Where the faces cross along such a border it is part of their intersection. The search
+//! leaves out the cells along it: the faces may miss each other there by less than the tolerance.
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use crate::base::fault::Result;
 use crate::base::math;
@@ -22,6 +22,9 @@ const PROBES: [f64; 5] = [0.03, 0.27, 0.4873, 0.74, 0.97];
 const CROSSING: f64 = 0.05;
 /// Steps of a border between two breaks.
 const STEPS: usize = 32;
+/// Steps of a border in all where it has many breaks, and steps between two of them at the least.
+const MOST_STEPS: usize = 512;
+const LEAST_STEPS: usize = 4;
 /// Places this share of a cell beyond its sides are in it.
 const SLACK: f64 = 1.0 / 64.0;
 
@@ -35,43 +38,37 @@ pub(crate) struct KnownCurve {
 }
 
 impl KnownCurve {
-    /// The borders of two faces that lie on the other one, all of each, where the faces cross along them.
+    /// Whole borders of either face that lie on the other one, where the faces cross along them.
+    ///
+    /// Fails as [`with_curve`] does.
     pub fn between(a: &Surface, b: &Surface, tolerance: &Tolerance) -> Result<Vec<Self>> {
         let mut found: Vec<Self> = Vec::new();
         if [a, b].iter().any(|face| face.ground() == Domain::Unbounded) {
             return Ok(found);
         }
+        let borders = [near_borders(a, b, tolerance)?, near_borders(b, a, tolerance)?];
+        if borders.iter().all(Vec::is_empty) {
+            return Ok(found);
+        }
         let grounds = [a, b].map(|face| widely_grounded(face, face.hull()));
         let nearest = [Nearest::new(&grounds[0]), Nearest::new(&grounds[1])];
-        for (own, other) in [(0, 1), (1, 0)] {
-            let face = [a, b][own];
-            let reach = grounds[other].hull();
-            for k in 0..face.n_sides() {
-                let Side::Chain { chain, from, to } = face.side(k) else { continue };
-                if !reach.touches(&chain.bbox(), tolerance.point) {
-                    continue;
-                }
-                let chain = between(&chain, from, to, tolerance)?;
-                let crosses = |f: &f64| {
-                    let p = chain.point(*f);
-                    let (here, there) = (nearest[own].at(p).uv, nearest[other].at(p));
-                    let normals = (grounds[own].normal(here.0, here.1), grounds[other].normal(there.uv.0, there.uv.1));
+        for (own, chains) in borders.into_iter().enumerate() {
+            let other = 1 - own;
+            let crosses = |p: DVec3| {
+                let foot = nearest[other].at(p);
+                foot.distance <= tolerance.point && {
+                    let here = nearest[own].at(p).uv;
+                    let normals = (grounds[own].normal(here.0, here.1), grounds[other].normal(foot.uv.0, foot.uv.1));
                     let angle = math::angle_between(normals.0, normals.1);
-                    there.distance <= tolerance.point && angle.min(std::f64::consts::PI - angle) >= CROSSING
-                };
-                if !PROBES.iter().all(crosses) || found.iter().any(|known| known.runs_along(&chain, tolerance)) {
-                    continue;
+                    angle.min(std::f64::consts::PI - angle) >= CROSSING
                 }
-                let runs = with_curve(&chain, std::slice::from_ref(&grounds[other]), tolerance)?;
-                let near = tolerance.point / chain.length();
-                if !runs.iter().any(|run| run.f <= near && run.overlap_end.is_some_and(|to| to >= 1.0 - near)) {
-                    continue;
+            };
+            for chain in chains {
+                let is_new = || found.iter().all(|known| !known.runs_along(&chain, tolerance));
+                if PROBES.iter().all(|f| crosses(chain.point(*f))) && is_new() && lies_on(&chain, &grounds[other], tolerance)? {
+                    let places = places(&chain, |p| [0, 1].map(|n| DVec2::from(nearest[n].at(p).uv)));
+                    found.push(Self { chain, places, turns: [shifts(a), shifts(b)] });
                 }
-                let stops = [vec![0.0], chain_breaks(&chain), vec![1.0]].concat();
-                let steps = stops.windows(2).flat_map(|w| (0..STEPS).map(move |k| w[0] + (w[1] - w[0]) * k as f64 / STEPS as f64));
-                let place = |f: f64| [0, 1].map(|n: usize| DVec2::from(nearest[n].at(chain.point(f)).uv));
-                let places = steps.chain([1.0]).map(place).collect();
-                found.push(Self { chain, places, turns: [shifts(a), shifts(b)] });
             }
         }
         Ok(found)
@@ -94,6 +91,35 @@ impl KnownCurve {
             })
         })
     }
+}
+
+/// The borders of a face whose boxes touch that of another one.
+fn near_borders(face: &Surface, other: &Surface, tolerance: &Tolerance) -> Result<Vec<Chain>> {
+    let reach = other.hull();
+    let mut found = Vec::new();
+    for k in 0..face.n_sides() {
+        if let Side::Chain { chain, from, to } = face.side(k)
+            && reach.touches(&chain.bbox(), tolerance.point)
+        {
+            found.push(between(&chain, from, to, tolerance)?);
+        }
+    }
+    Ok(found)
+}
+
+/// Whether all of a curve lies on a surface.
+fn lies_on(chain: &Chain, surface: &Surface, tolerance: &Tolerance) -> Result<bool> {
+    let near = tolerance.point / chain.length();
+    let runs = with_curve(chain, std::slice::from_ref(surface), tolerance)?;
+    Ok(runs.iter().any(|run| run.f <= near && run.overlap_end.is_some_and(|to| to >= 1.0 - near)))
+}
+
+/// Places of a curve in the (u, v) of both surfaces, in order: [`STEPS`] to each span between breaks, fewer where there are many.
+fn places(chain: &Chain, at: impl Fn(DVec3) -> [DVec2; 2]) -> Vec<[DVec2; 2]> {
+    let stops = [vec![0.0], chain_breaks(chain), vec![1.0]].concat();
+    let steps = (MOST_STEPS / stops.len()).clamp(LEAST_STEPS, STEPS);
+    let inner = stops.windows(2).flat_map(|w| (0..steps).map(move |k| w[0] + (w[1] - w[0]) * k as f64 / steps as f64));
+    inner.chain([1.0]).map(|f| at(chain.point(f))).collect()
 }
 
 /// The shares of a short straight way in (u, v) that lie in a cell. A way round the surface is none.

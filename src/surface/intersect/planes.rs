@@ -1,4 +1,4 @@
-//! The straight line in which two flat faces meet, in closed form: no search, whatever the numbers are.
+//! Intersects two flat faces in closed form.
 
 use glam::{DVec2, DVec3};
 
@@ -48,10 +48,10 @@ impl Flat {
     }
 }
 
-/// What two flat faces have in common: straight lines, and points where they only touch. `None` where one is not flat or they lie
-/// in one plane within the tolerance.
+/// Returns the straight line in which the planes of two flat faces meet, cut at parallelograms but not at loops, and points of loops
+/// on both faces. `None` where a face is not flat, or both lie in one plane within the tolerance.
 ///
-/// Faces have their loops (`with_loops`); one at most is unbounded.
+/// Faces know their loops in (u, v); one at most is unbounded. Fails where curves that bound a face do (`meet`).
 pub(crate) fn flat_faces(faces: [&Surface; 2], boxes: [Box3; 2], origin: Origin, tolerance: &Tolerance) -> Result<Option<Lines>> {
     let (Some(a), Some(b)) = (Flat::of(faces[0], boxes[1]), Flat::of(faces[1], boxes[0])) else { return Ok(None) };
     let across = a.normal.cross(b.normal);

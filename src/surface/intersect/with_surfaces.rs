@@ -107,7 +107,7 @@ fn of_two(a: &Surface, b: &Surface, origin: Origin, tolerance: &Tolerance) -> Re
     Ok((kept, touches))
 }
 
-/// The curves in which the grounds of two surfaces meet, not yet cut at their loops, and touches, by subdivision.
+/// Finds by subdivision the curves in which two surfaces meet and the points where they touch; loops do not cut the curves yet.
 fn searched([a, b]: [&Surface; 2], [box_a, box_b]: [Box3; 2], origin: Origin, tolerance: &Tolerance) -> Result<(Vec<Curve>, Vec<DVec3>)> {
     let (mut sheets_a, mut sheets_b) = (sheets(&widely_grounded(a, box_b)), sheets(&widely_grounded(b, box_a)));
     let lost =
