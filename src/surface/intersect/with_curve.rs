@@ -17,6 +17,7 @@ use crate::surface::data::kind::Domain;
 use crate::surface::intersect::curve_patch::{Contact, CurveTouch, contacts};
 use crate::surface::intersect::sheet::{Patch, Sheet, grounded, patches};
 use crate::surface::rails::side::Side;
+use crate::surface::trims::compose::rational;
 use crate::surface::trims::trim::over_frame;
 
 /// A meeting of a curve and a surface.
@@ -31,6 +32,9 @@ pub struct SurfaceMeeting {
     /// Where an overlap that lies on the surface ends.
     pub overlap_end: Option<f64>,
 }
+
+/// Share of the tolerance within which a curve lies in a plane.
+const LYING: f64 = 0.5;
 
 /// What stays within the tolerance of a surface for longer lies on it: eight times what a curve as bent as the model is large
 /// does that merely touches.
@@ -69,20 +73,11 @@ fn with_one(chain: &Chain, surface: &Surface, tolerance: &Tolerance) -> Result<V
     let curve = chain.to_curve()?;
     // A plane is searched over its own frame: the map of a triangle folds at a corner.
     let (mapped, surface) = (surface, &over_frame(surface, tolerance)?);
-    let ground = grounded(surface, curve.bbox());
-    let mut found: Vec<Contact> = Vec::new();
-    for patch in patches(&ground) {
-        found.extend(on_patch(&curve, patch, tolerance)?);
-    }
     let length = curve.length();
-    let fraction = |t: f64| curve.length_at(t) / length;
-    let (mut overlaps, mut points): (Vec<(f64, f64)>, Vec<CurveTouch>) = (Vec::new(), Vec::new());
-    for contact in found {
-        match contact {
-            Contact::Overlap { t } => overlaps.push((fraction(t.0), fraction(t.1))),
-            Contact::Point(touch) => points.push(CurveTouch { t: fraction(touch.t), ..touch }),
-        }
-    }
+    let (overlaps, mut points) = match in_plane(chain, &curve, surface, tolerance)? {
+        Some(on_loops) => (vec![(0.0, 1.0)], on_loops),
+        None => searched(&curve, surface, tolerance)?,
+    };
     let near = tolerance.point / length;
     let mut out = Vec::new();
     for (from, to) in kept_intervals(chain, surface, united(overlaps, near), tolerance)? {
@@ -106,6 +101,48 @@ fn with_one(chain: &Chain, surface: &Surface, tolerance: &Tolerance) -> Result<V
         out.iter_mut().for_each(|m| m.uv = closest(mapped, m.point).uv);
     }
     Ok(out)
+}
+
+/// Where a curve that lies in the plane of a face meets the loops of the face, by fractions of the curve; `None` for other curves and
+/// faces. The loops alone tell which parts of the curve lie on the face, however small these are beside the curve.
+fn in_plane(chain: &Chain, curve: &Curve, surface: &Surface, tolerance: &Tolerance) -> Result<Option<Vec<CurveTouch>>> {
+    if !surface.is_flat() || !matches!(surface.domain(), Domain::Loop | Domain::Unbounded) {
+        return Ok(None);
+    }
+    let Some(curve) = rational(curve) else { return Ok(None) };
+    let jet = surface.jet(0.0, 0.0);
+    let normal = jet.du.cross(jet.dv).normalize_or_zero();
+    let height = |k: usize| normal.dot(curve.pole(k) - jet.p).abs();
+    if normal == DVec3::ZERO || !(0..curve.poles.len()).all(|k| height(k) <= LYING * tolerance.point) {
+        return Ok(None);
+    }
+    let mut touches = Vec::new();
+    for k in 0..surface.n_sides() {
+        let Side::Chain { chain: border, .. } = surface.side(k) else { continue };
+        for m in meet_chains(chain, &border, tolerance)? {
+            let (p, uv) = (chain.point(m.fa), surface.flat_uv(m.point).unwrap_or_default());
+            touches.push(CurveTouch { t: m.fa, uv: uv.into(), p, gap: p.distance(border.point(m.fb)), sine: 1.0 });
+        }
+    }
+    Ok(Some(touches))
+}
+
+/// Overlaps of a curve and a surface without its loops, and other meetings, both by fractions of the curve.
+fn searched(curve: &Curve, surface: &Surface, tolerance: &Tolerance) -> Result<(Vec<(f64, f64)>, Vec<CurveTouch>)> {
+    let mut found: Vec<Contact> = Vec::new();
+    for patch in patches(&grounded(surface, curve.bbox())) {
+        found.extend(on_patch(curve, patch, tolerance)?);
+    }
+    let length = curve.length();
+    let fraction = |t: f64| curve.length_at(t) / length;
+    let (mut overlaps, mut points): (Vec<(f64, f64)>, Vec<CurveTouch>) = (Vec::new(), Vec::new());
+    for contact in found {
+        match contact {
+            Contact::Overlap { t } => overlaps.push((fraction(t.0), fraction(t.1))),
+            Contact::Point(touch) => points.push(CurveTouch { t: fraction(touch.t), ..touch }),
+        }
+    }
+    Ok((overlaps, points))
 }
 
 /// Meetings of a curve with one patch.

@@ -48,8 +48,8 @@ pub(crate) fn exact(surface: &Surface, chain: &Chain, origin: Origin) -> Option<
     Some(Curve::new(CurveShape::Nurbs(Arc::new(Nurbs::joined(&made))), Kind::Project, origin))
 }
 
-/// A curve whose rational form is itself.
-fn rational(curve: &Curve) -> Option<Nurbs> {
+/// The rational form of a curve that has an exact one.
+pub(crate) fn rational(curve: &Curve) -> Option<Nurbs> {
     match curve.shape() {
         CurveShape::Line(a, b) => Some(Nurbs::line(*a, *b)),
         CurveShape::Arc(arc) => Some(arc.to_nurbs()),
