@@ -127,15 +127,18 @@ fn in_plane(chain: &Chain, curve: &Curve, surface: &Surface, tolerance: &Toleran
     Ok(Some(touches))
 }
 
+/// A part of a curve, from one fraction of its length to another.
+type Stretch = (f64, f64);
+
 /// Overlaps of a curve and a surface without its loops, and other meetings, both by fractions of the curve.
-fn searched(curve: &Curve, surface: &Surface, tolerance: &Tolerance) -> Result<(Vec<(f64, f64)>, Vec<CurveTouch>)> {
+fn searched(curve: &Curve, surface: &Surface, tolerance: &Tolerance) -> Result<(Vec<Stretch>, Vec<CurveTouch>)> {
     let mut found: Vec<Contact> = Vec::new();
     for patch in patches(&grounded(surface, curve.bbox())) {
         found.extend(on_patch(curve, patch, tolerance)?);
     }
     let length = curve.length();
     let fraction = |t: f64| curve.length_at(t) / length;
-    let (mut overlaps, mut points): (Vec<(f64, f64)>, Vec<CurveTouch>) = (Vec::new(), Vec::new());
+    let (mut overlaps, mut points): (Vec<Stretch>, Vec<CurveTouch>) = (Vec::new(), Vec::new());
     for contact in found {
         match contact {
             Contact::Overlap { t } => overlaps.push((fraction(t.0), fraction(t.1))),
