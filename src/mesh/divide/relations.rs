@@ -183,7 +183,7 @@ impl Relations {
             Conflict::Endless { relation } => {
                 let (surface, at) = place(*relation);
                 let why = "its opposite sides are parts of one strip, so that no counts make them equal".to_owned();
-                FaceFault::CannotMap { surface, why, at }.into()
+                FaceFault::CannotMap { surface, why, at, help: None }.into()
             }
             Conflict::ThreeSides { relation, counts, written: by } => {
                 let mut by: Vec<(u32, Origin)> = by.iter().map(|s| written(*s)).collect();

@@ -2,6 +2,7 @@
 
 use crate::base::fault::Result;
 use crate::base::text::real;
+use crate::base::tolerance::Tolerance;
 use crate::mesh::border::layout::{Face, Layout, Uneven, middle};
 use crate::mesh::request::fault::FaceFault;
 use crate::mesh::request::input::Input;
@@ -26,11 +27,15 @@ pub fn choose(input: &Input, layout: &mut Layout) -> Result<()> {
                 Uneven::Sharp(angle) => format!("whose map would have angles of {}°", short(angle.to_degrees())),
             })
         };
-        let why = unmappable(surface, face).or_else(crossed).or_else(uneven).or_else(|| pole(face));
+        let why = unmappable(surface, face, input.tolerance).or_else(crossed).or_else(uneven).or_else(|| pole(face));
         let (of, at) = (surface.origin(), middle(input, face));
         let borderless = face.sides.iter().all(|s| s.uses.is_empty());
         if let Some(why) = why.clone().filter(|_| face.method == Method::Mapped || borderless) {
-            return Err(FaceFault::CannotMap { surface: of, why, at }.into());
+            let help = (face.method == Method::Mapped).then(|| match surface.sides_without_map(input.tolerance) {
+                Some(_) => "without `method: mapped` the face is meshed freely; to map it, divide it into faces of three or four sides without inner corners",
+                None => "without `method: mapped` the face is meshed freely",
+            });
+            return Err(FaceFault::CannotMap { surface: of, why, at, help }.into());
         }
         face.free = face.method.is_free() || why.is_some();
         face.why = why.filter(|_| !face.method.is_free());
@@ -65,7 +70,10 @@ pub(crate) fn crossed(face: &Face) -> String {
 }
 
 /// Why a face cannot be mapped, in words that follow "a face".
-fn unmappable(surface: &Surface, face: &Face) -> Option<String> {
+fn unmappable(surface: &Surface, face: &Face, tolerance: &Tolerance) -> Option<String> {
+    if let Some(sides) = surface.sides_without_map(tolerance) {
+        return Some(format!("with {sides} sides between which a map folds over or nearly does"));
+    }
     if matches!(surface.domain(), Domain::Loop | Domain::Unbounded) {
         return Some(match surface.domain() {
             Domain::Loop if face.sides.len() == 1 => "with one side and no map".to_owned(),

@@ -1,8 +1,8 @@
 //! `plane`: flat faces between curves.
 //!
-//! A boundary of two, three or four sides is mapped (ruled, uniform trilateral, bilinear Coons). Sides are the curves as
-//! written; of one curve, or of more than four, the runs between corners. Any other boundary is a face with an area
-//! and a border, over the box of its plane, but without a map.
+//! A boundary of two, three or four sides is mapped (ruled, uniform trilateral, bilinear Coons) where that map is regular. Sides are
+//! the curves as written; of one curve, or of more than four, the runs between corners. Any other boundary is a face with an area and
+//! a border, over the box of its plane, but without a map.
 
 use crate::base::fault::{Fault, Result};
 use crate::base::origin::Origin;
@@ -10,6 +10,7 @@ use crate::base::tolerance::Tolerance;
 use crate::network::{Chain, Flow, FlowKind};
 use crate::surface::blended::coons::{borders, set_kinks};
 use crate::surface::core::plane::{around, fitted, flat};
+use crate::surface::core::regular::is_regular;
 use crate::surface::core::shape::Shape;
 use crate::surface::core::surface::{Parts, Surface};
 use crate::surface::data::flow_words::phrase;
@@ -34,16 +35,32 @@ pub fn bounded(chains: &[Chain], origin: Origin, tolerance: &Tolerance) -> Resul
     let frame = fitted(&walk, tolerance)?;
     let sides = if (2..=4).contains(&walk.len()) { walk.clone() } else { between_corners(&walk, origin, tolerance)? };
     let mut notes = Vec::new();
-    let mut surface = match sides.as_slice() {
+    let surface = match sides.as_slice() {
         [a, b] => two(a, b, origin, tolerance, &mut notes),
         [a, b, c] => three(a, b, c, origin),
         [a, b, c, d] => four([a, b, c, d], origin, tolerance, &mut notes),
-        _ => around(&walk, frame, origin),
+        _ => return Ok((around(&walk, frame, origin), Vec::new())),
     };
-    if surface.domain() != Domain::Loop {
-        surface = Surface::new(Parts { chains: chains.to_vec(), ..surface.parts().clone() });
+    let normal = frame.eu.cross(frame.ev).normalize_or_zero();
+    if !is_regular(&surface, normal, tolerance) || sides.len() == 2 && is_sheared(&surface) {
+        return Ok((around(&walk, frame, origin), Vec::new()));
     }
-    Ok((surface, notes))
+    Ok((Surface::new(Parts { chains: chains.to_vec(), ..surface.parts().clone() }), notes))
+}
+
+/// Least sine of the angle at which the lines between two sides meet them: below, as between an airfoil and its blunt edge, they run
+/// along the longer side.
+const LEAST_SINE: f64 = 0.1;
+/// Places along two sides at which these angles are looked at.
+const PLACES: usize = 32;
+
+/// Whether the lines between two sides that end in poles run along one of them.
+fn is_sheared(surface: &Surface) -> bool {
+    let places = (0..PLACES).map(|k| (k as f64 + 0.5) / PLACES as f64);
+    places.flat_map(|u| [(u, 0.0), (u, 1.0)]).any(|(u, v)| {
+        let jet = surface.jet(u, v);
+        jet.du.cross(jet.dv).length() < LEAST_SINE * jet.du.length() * jet.dv.length()
+    })
 }
 
 /// The boundary cut at its corners, begun at the first corner along the walk when the first chain does not start in one.

@@ -9,6 +9,7 @@ pub mod joined_piece;
 mod normals;
 pub mod plane;
 pub mod power_form;
+pub(crate) mod regular;
 pub mod shape;
 pub mod square;
 pub mod surface;

@@ -60,6 +60,18 @@ fn free_sides() -> Vec<Border> {
     (0..4).map(|_| Border::straight(Side::Free)).collect()
 }
 
+impl Surface {
+    /// Number of sides of a plane that has two to four and yet no map, since that would fold over.
+    pub fn sides_without_map(&self, tolerance: &Tolerance) -> Option<usize> {
+        let Parts { domain, kind, trim, chains, .. } = self.parts();
+        if *domain != Domain::Loop || *kind != SurfaceKind::Plane || trim.is_some() {
+            return None;
+        }
+        let sides = if let [whole] = chains.as_slice() { whole.kinks(tolerance).len() } else { chains.len() };
+        (2..=4).contains(&sides).then_some(sides)
+    }
+}
+
 /// A bounded plane as a face without a map, whose parameters are straight; any other surface as it is.
 pub(crate) fn unmapped(surface: &Surface, tolerance: &Tolerance) -> Result<Surface> {
     let parts = surface.parts();

@@ -16,6 +16,8 @@ pub enum FaceFault {
         why: String,
         /// A point of the face.
         at: DVec3,
+        /// What to write instead.
+        help: Option<&'static str>,
     },
     /// E704: triangles that cannot be avoided.
     QuadsImpossible {
@@ -69,9 +71,10 @@ impl Describe for FaceFault {
 
     fn describe(&self, say: &dyn Say) -> Report {
         match self {
-            Self::CannotMap { surface, why, at } => {
-                Report::new(format!("{} cannot be mapped at {}: {why}", say.quoted(*surface, "a face"), say.point(*at)))
-                    .at(*surface, "this face")
+            Self::CannotMap { surface, why, at, help } => {
+                let report = Report::new(format!("{} cannot be mapped at {}: {why}", say.quoted(*surface, "a face"), say.point(*at)))
+                    .at(*surface, "this face");
+                help.iter().fold(report, |report, help| report.help(*help))
             }
             Self::QuadsImpossible { mesh, places } => {
                 let total: u64 = places.iter().map(|p| p.1).sum();
