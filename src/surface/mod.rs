@@ -36,7 +36,7 @@ pub mod trims;
 
 pub use crate::surface::analysis::as_net::{NetForm, Off};
 pub use crate::surface::analysis::iso_line::IsoLine;
-pub use crate::surface::blended::ruled::ruled;
+pub use crate::surface::blended::ruled::{ruled, ruled_as_drawn};
 pub use crate::surface::closest::bounding_box::{bbox, boxed};
 pub use crate::surface::closest::boxed::Boxed;
 pub use crate::surface::closest::curve_extent::curve_bbox;

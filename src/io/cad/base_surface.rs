@@ -16,7 +16,7 @@ use crate::network::Chain;
 use crate::surface::core::plane;
 use crate::surface::swept::extrude;
 use crate::surface::swept::revolve::{self, Axis};
-use crate::surface::{NurbsSurface, Surface, SurfaceKind, ruled};
+use crate::surface::{NurbsSurface, Surface, SurfaceKind, ruled_as_drawn};
 
 /// A surface of the file in model units; (u, v) are the file's.
 #[derive(Clone, Debug)]
@@ -107,7 +107,7 @@ impl Base {
             && !(even(a) && even(b))
         {
             let chains = [Chain::of_curve(a), Chain::of_curve(b)];
-            return Ok(ruled(&chains[0], &chains[1], origin, tolerance)?.0);
+            return Ok(ruled_as_drawn(&chains[0], &chains[1], origin, tolerance)?.0);
         }
         if let Some(surface) = self.moved_curve(reach, origin, tolerance)? {
             return Ok(surface);

@@ -6,6 +6,7 @@ use crate::base::tolerance::Tolerance;
 use crate::geometry::construct::build::line;
 use crate::network::Chain;
 use crate::surface::blended::coons::{borders, set_kinks};
+use crate::surface::blended::skin_align::{SkinSection, aligned};
 use crate::surface::core::shape::Shape;
 use crate::surface::core::surface::{Parts, Surface};
 use crate::surface::data::flow_words::phrase;
@@ -20,14 +21,37 @@ use crate::surface::shapes::weights::BlendAxis;
 
 /// The ruled surface S(u, v) = (1 − v) a(u) + v b(u), u the arc-length fraction of both.
 ///
-/// `b` is read backwards when that makes the two end lines shorter together (the longer way crosses them), a closed one when it runs
-/// the other way round; closed curves are read from where they start. Ends that meet are poles. Returns warnings too (W614).
+/// `b` is read backwards when that makes the two end lines shorter together (the longer way crosses them). Of closed curves it is read
+/// as a skin reads its sections: the way round that `a` runs, from the start from which lines twist least. Ends that meet are poles.
+/// Returns warnings too (W614).
 pub fn ruled(a: &Chain, b: &Chain, origin: Origin, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
-    let closed = a.is_closed(tolerance) && b.is_closed(tolerance);
+    if !closed(a, b, tolerance) {
+        return ruled_as_drawn(a, b, origin, tolerance);
+    }
+    let sections = [a, b].map(|chain| SkinSection::Curve(chain.clone()));
+    match aligned(&sections, true, tolerance)?.pop() {
+        Some(read) => between(a, b, read.rail(), origin, tolerance),
+        None => ruled_as_drawn(a, b, origin, tolerance),
+    }
+}
+
+/// The same with closed curves read from where they start, however the lines twist.
+pub fn ruled_as_drawn(a: &Chain, b: &Chain, origin: Origin, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
     let apart = |b0: glam::DVec3, b1: glam::DVec3| a.start().distance_squared(b0) + a.end().distance_squared(b1);
-    let reversed =
-        if closed { Ring::of(a).runs_against(&Ring::of(b)) == Some(true) } else { apart(b.end(), b.start()) < apart(b.start(), b.end()) };
+    let reversed = match closed(a, b, tolerance) {
+        true => Ring::of(a).runs_against(&Ring::of(b)) == Some(true),
+        false => apart(b.end(), b.start()) < apart(b.start(), b.end()),
+    };
     let other = Rail::new(b.clone(), if reversed { Map::reverse() } else { Map::identity() });
+    between(a, b, other, origin, tolerance)
+}
+
+fn closed(a: &Chain, b: &Chain, tolerance: &Tolerance) -> bool {
+    a.is_closed(tolerance) && b.is_closed(tolerance)
+}
+
+fn between(a: &Chain, b: &Chain, other: Rail, origin: Origin, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
+    let closed = closed(a, b, tolerance);
     let rails = vec![Rail::new(a.clone(), Map::identity()), other];
     let axis = || BlendAxis::new(vec![0.0, 1.0], Rule::Lagrange);
     let mut blend = Blend::new(axis(), axis(), Vec::new(), rails);

@@ -14,6 +14,9 @@ use crate::surface::rails::ring::{PLACES, Ring};
 
 /// Starts tried along a closed section before the best one is made better.
 const STARTS: usize = 64;
+/// A start as it is drawn is kept where it lies within this share of the length of the best one, and its mean squared distance is at most
+/// so many times the least.
+const AS_DRAWN: (f64, f64) = (1.0 / 32.0, 2.0);
 /// Intervals over which squared distances are integrated, beside those between corners.
 const PANELS: usize = 16;
 /// Points of the rule for each of them.
@@ -165,7 +168,7 @@ fn nearest_start(before: (&Chain, bool), section: &Chain, tolerance: &Tolerance)
     let (ring, own) = (Ring::of(before.0), Ring::of(section));
     let ring = if before.1 { ring.turned() } else { ring };
     let against = ring.runs_against(&own);
-    let mut best: Option<(f64, f64, SectionPair)> = None;
+    let mut best: Option<(f64, f64, SectionPair, Vec<DVec3>)> = None;
     for turned in against.map_or(vec![false, true], |turned| vec![turned]) {
         let pair = SectionPair::new(before, section, turned, ring, own);
         let wanted: Vec<DVec3> = (0..PLACES).map(|k| pair.wanted(k as f64 / PLACES as f64)).collect();
@@ -173,16 +176,20 @@ fn nearest_start(before: (&Chain, bool), section: &Chain, tolerance: &Tolerance)
         let nearer = |a: (f64, f64), b: (f64, f64)| if b.0 < a.0 * (1.0 - tolerance.parameter) { b } else { a };
         let Some((miss, start)) = off.reduce(nearer) else { continue };
         if best.as_ref().is_none_or(|(least, ..)| miss < least * (1.0 - tolerance.parameter)) {
-            best = Some((miss, start, pair));
+            best = Some((miss, start, pair, wanted));
         }
     }
-    let Some((_, mut start, pair)) = best else { return Ok(Read::Curve(section.clone(), false)) };
+    let Some((_, mut start, pair, wanted)) = best else { return Ok(Read::Curve(section.clone(), false)) };
     if !kinked && start != 0.0 {
-        let (step, rule) = (2.0 / STARTS as f64, gauss_legendre(ORDER));
+        let (step, rule) = (1.0 / STARTS as f64, gauss_legendre(ORDER));
         let slope = |start: f64| pair.slope(start, &corners, &rule);
-        let (low, high) = (start - step, start + step);
+        let (low, high) = (start - 2.0 * step, start + 2.0 * step);
         if slope(low).0 < 0.0 && slope(high).0 > 0.0 {
             start = solve::bracketed(low, high, EPSILON, slope).rem_euclid(1.0);
+        }
+        // Sections of different shapes leave no start without a twist. Starts that were drawn to match then keep seams where they are.
+        if start.min(1.0 - start) <= AS_DRAWN.0 && pair.apart(&wanted, 0.0) <= AS_DRAWN.1 * pair.apart(&wanted, start) {
+            start = 0.0;
         }
     }
     let turned = pair.turned;

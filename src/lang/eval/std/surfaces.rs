@@ -21,7 +21,7 @@ use crate::surface::core::plane;
 use crate::surface::faults::SurfaceFault;
 use crate::surface::intersect::self_intersection::crossing;
 use crate::surface::swept::{extrude, revolve};
-use crate::surface::{Domain, Surface, Way, project, ruled as surface_between};
+use crate::surface::{Domain, Surface, Way, project, ruled as surface_between, ruled_as_drawn};
 
 /// Checks that (u, v) lies in the surface's domain; each with the name of its argument.
 pub(crate) fn checked_uv(surface: &Surface, u: (f64, &'static str), v: (f64, &'static str)) -> Result<(f64, f64), Halt> {
@@ -80,7 +80,8 @@ const PLANE_EXAMPLE: &str = "plane(a, b, c), or plane(at: P, normal: (0, 0, 1))"
 builtins! {
     /// Surface of straight lines between two curves.
     ///
-    /// The second curve is read backwards where that keeps the lines from crossing.
+    /// The second curve is read backwards where that keeps the lines from crossing, a closed one from the start from which they twist
+    /// least.
     /// ```loft
     /// curve low = line((0, 0, 0), (4m, 0, 0))
     /// curve high = arc((0, 2m, 1m), (4m, 2m, 1m), through: (2m, 2m, 2m))
@@ -91,9 +92,12 @@ builtins! {
         a: Chain,
         /// v = 1.
         b: Chain,
-    ) -> Surface = |cx, a, b| {
+        /// Whether closed curves are read from where they start: for a twist that is meant.
+        as_drawn: bool = "false",
+    ) -> Surface = |cx, a, b, as_drawn| {
         let tolerance = cx.tolerance()?;
-        let (surface, notes) = surface_between(&a, &b, cx.origin(), &tolerance)?;
+        let between = if as_drawn { ruled_as_drawn } else { surface_between };
+        let (surface, notes) = between(&a, &b, cx.origin(), &tolerance)?;
         reported(cx, surface, &notes)
     };
 
