@@ -7,6 +7,7 @@ pub mod curve_patch;
 pub mod fit_branch;
 pub mod join_curves;
 pub mod known_curves;
+pub mod line_crossing;
 pub mod march;
 pub mod pair;
 pub mod patch_pair;

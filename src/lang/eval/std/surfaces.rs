@@ -19,7 +19,7 @@ use crate::network::{self, Chain};
 use crate::surface::blended::plane_face;
 use crate::surface::core::plane;
 use crate::surface::faults::SurfaceFault;
-use crate::surface::intersect::self_intersection::crossing;
+use crate::surface::intersect::line_crossing::any_crossing;
 use crate::surface::swept::{extrude, revolve};
 use crate::surface::{Domain, Surface, Way, project, ruled as surface_between, ruled_as_drawn};
 
@@ -54,7 +54,7 @@ pub(crate) fn note_crossing(cx: &mut Cx, said: &[Fault], faces: &[Surface], tole
     if said.iter().any(|fault| FOLDS.contains(&fault.code().0)) {
         return;
     }
-    if let Some(found) = crossing(faces, tolerance) {
+    if let Some(found) = any_crossing(faces, tolerance) {
         let uv = (found.faces.0 == found.faces.1).then_some(found.uv);
         let surface = cx.origin();
         cx.say(&SurfaceFault::CrossesItself { surface, uv, at: found.at }.into());
