@@ -9,6 +9,7 @@ use crate::lang::values::conversions::{Angle, Axis, Length, Point};
 use crate::lang::values::value::Value;
 use crate::network::Chain;
 use crate::surface::Surface;
+use crate::surface::intersect::line_crossing::any_crossing;
 use crate::surface::swept::along::{AlongSettings, along as carried_along};
 use crate::surface::swept::laws::Law;
 use crate::surface::swept::revolve;
@@ -200,4 +201,10 @@ crate::fields! {
             ("residual", Value::length(c.residual)),
         ])
     }).collect());
+
+    /// The place in which it crosses itself, as W669 reports it; an empty list where none is found.
+    fn self_crossings(
+        /// The surface.
+        s: Surface,
+    ) -> Vec<Point> = |cx, s| Ok(any_crossing(&[s], &cx.tolerance()?).into_iter().map(|found| Point(found.at)).collect());
 }
