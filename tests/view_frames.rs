@@ -428,3 +428,24 @@ fn many_members_are_one_thing() {
     assert_eq!((starts.len(), &header["edges"][49]["name"]), (51, &serde_json::Value::from("many[49]")));
     assert_eq!(thing(&view, "many").chain[0].line, 3);
 }
+
+/// A shell says which of its surfaces other things draw, a group which surfaces and patches it has, and an edge how many faces meet on it.
+#[test]
+fn shells_and_groups_name_what_other_things_draw() {
+    let text = "units m\n\
+        curve rim = polyline([(0, 0, 0), (2, 0, 0), (2, 1, 0)])\n\
+        surface walls = extrude(rim, by: (0, 0, 1))\n\
+        surface fin = extrude(line((2, 0, 0), (3, 0, 0)), by: (0, 0, 1))\n\
+        shell both of walls, fin, move(fin, by: (0, 1, 0)) { imprint: true }\n\
+        group first of walls.patches[0], fin\n\
+        group all of both\n";
+    let mut viewer = viewer("held", &[("held.loft", text)]);
+    let view = show(&mut viewer, 1, text);
+    assert_eq!(thing(&view, "both").surfaces, ["walls", "fin"]);
+    assert_eq!(thing(&view, "first").surfaces, ["walls.patches[0]", "fin"]);
+    assert_eq!(thing(&view, "all").surfaces.len(), 3);
+    let mut meeting = array(buffer(&view, "both", Role::Edges), "faces").1;
+    meeting.sort_by(f64::total_cmp);
+    assert_eq!(meeting.last(), Some(&3.0), "{meeting:?}");
+    assert!(thing(&view, "walls").surfaces.is_empty());
+}

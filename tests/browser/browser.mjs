@@ -84,6 +84,14 @@ export async function shareDrawn(page) {
   return drawn / (width * height);
 }
 
+/** Colours at absolute points, as they stand in the picture. */
+export async function colorsAt(page, points) {
+  const box = await canvasBox(page);
+  const places = await page.evaluate((all) => all.map((point) => window.loftView.toScreen(point)), points);
+  const { at } = readPng(await page.screenshot({ clip: box }));
+  return places.map(([x, y]) => at(Math.round(x), Math.round(y)));
+}
+
 /** Reads the pixels of a PNG of eight bits a channel, as a browser writes it. */
 export function readPng(bytes) {
   const width = bytes.readUInt32BE(16);

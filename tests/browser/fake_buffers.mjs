@@ -80,8 +80,15 @@ function patch(at, n, m) {
   return { positions, normals, triangles, curvature };
 }
 
-/** Several patches as one surface: its faces and its edges. `counts` says how many faces meet at each edge. */
-export function surface(name, patches, { origin = [0, 0, 0], cells = [16, 16], closed = false, names = null } = {}) {
+/**
+ * Several patches as one surface: its faces and its edges. `meeting` says how many faces meet on each edge, `bends` gives the Gauss and
+ * the mean curvature of each patch.
+ */
+export function surface(
+  name,
+  patches,
+  { origin = [0, 0, 0], cells = [16, 16], closed = false, names = null, meeting = null, bends = null } = {},
+) {
   const all = { positions: [], normals: [], triangles: [], curvature: [], face: [] };
   const lines = { positions: [], starts: [0], edges: [], faces: [] };
   patches.forEach((at, f) => {
@@ -89,7 +96,7 @@ export function surface(name, patches, { origin = [0, 0, 0], cells = [16, 16], c
     const first = all.positions.length / 3;
     for (const x of made.positions) all.positions.push(x);
     for (const x of made.normals) all.normals.push(x);
-    for (const x of made.curvature) all.curvature.push(x);
+    for (let i = 0; i < made.curvature.length; i++) all.curvature.push(bends ? bends[f][i % 2] : made.curvature[i]);
     for (const t of made.triangles) all.triangles.push(first + t);
     for (let t = 0; t < made.triangles.length / 3; t++) all.face.push(f);
     [(s) => at(s, 0), (s) => at(1, s), (s) => at(1 - s, 1), (s) => at(0, 1 - s)].forEach((side, k) => {
@@ -97,7 +104,7 @@ export function surface(name, patches, { origin = [0, 0, 0], cells = [16, 16], c
       for (const p of points) lines.positions.push(...p);
       lines.starts.push(lines.positions.length / 3);
       const inner = closed || (k === 1 && f + 1 < patches.length) || (k === 3 && f > 0);
-      lines.faces.push(inner ? 2 : 1);
+      lines.faces.push(meeting ?? (inner ? 2 : 1));
       lines.edges.push({
         name: `${name}.patches[${f}].${['south', 'east', 'north', 'west'][k]}`,
         length: points.slice(1).reduce((sum, p, i) => sum + Math.hypot(...p.map((x, q) => x - points[i][q])), 0),
@@ -155,7 +162,7 @@ export function points(names, places, origin = [0, 0, 0]) {
  * A mesh over one patch: triangles in one share of it and quadrangles in the rest. Of the sizes in the last two columns
  * of nodes nothing is known.
  */
-export function mesh(at, n, m, origin = [0, 0, 0], share = 0.5) {
+export function mesh(at, n, m, origin = [0, 0, 0], share = 0.5, { faces = ['roof.patches[0]', 'roof.patches[1]'], groups = null } = {}) {
   const { positions } = patch(at, n, m);
   const triangles = [];
   const quads = [];
@@ -190,13 +197,21 @@ export function mesh(at, n, m, origin = [0, 0, 0], share = 0.5) {
       asked: ['f32', 1, decided.map((d) => [NaN, 0.3, 0.2][d])],
     },
     {
-      faces: [
-        { name: 'roof.patches[0]', area: 1 },
-        { name: 'roof.patches[1]', area: 1 },
-      ],
-      groups: [{ name: 'rim', elements: [[1, n]], nodes: [] }],
+      faces: faces.map((name) => ({ name, area: 1 })),
+      groups: groups ?? [{ name: 'rim', elements: [[1, n]], nodes: [] }],
       deciders: ['not known', 'the size', 'size 0.2 near (0, 0, 0)', 'chord_error'],
       first_element: 1,
     },
   );
+}
+
+/** A box as eight nodes and six quadrangles, about its middle. */
+export function boxMesh(low, size) {
+  const origin = low.map((l, i) => l + size[i] / 2);
+  const positions = Array.from({ length: 8 }, (_, n) => size.map((s, i) => (n & (1 << i) ? s : -s) / 2)).flat();
+  const quads = [0, 2, 3, 1, 4, 5, 7, 6, 0, 1, 5, 4, 2, 6, 7, 3, 0, 4, 6, 2, 1, 3, 7, 5];
+  const face = ['u32', 1, [0, 0, 0, 0, 0, 0]];
+  const arrays = { positions: ['f32', 3, positions], triangles: ['u32', 3, []], quads: inSteps(4, quads), lines: ['u32', 2, []], face };
+  const more = { faces: [{ name: 'box', area: 1 }], groups: [], first_element: 1 };
+  return buffer('mesh', origin, boxOf(positions, origin), arrays, more);
 }

@@ -9,6 +9,7 @@ export function thing(name, kind, buffers, line, more = {}) {
     name,
     kind,
     of: [],
+    surfaces: [],
     chain: [place(line, 1, `${kind} ${name}`), place(2, 1, 'fn profile')],
     facts: [['area', '3.2 m²']],
     buffers: buffers.map(({ key, bytes, role }) => ({ key, bytes: bytes.length, role })),
@@ -158,7 +159,7 @@ export function roof(number, { rise = 1.2, set = {}, broken = false, origin = [0
     thing('wall', 'surface', walls, 8),
     thing('tank', 'shell', tank, 8),
     thing('plate', 'mesh', [plate], 9, { of: ['roof'] }),
-    thing('all_of_it', 'group', [], 9, { of: ['roof', 'wall'] }),
+    thing('all_of_it', 'group', [], 9, { of: ['roof', 'wall'], surfaces: ['roof', 'wall'] }),
   ];
   if (broken) things.push(thing('porch', 'surface', [], 8, { unmade: 'its border is open' }));
   const made = frame(number, [...buffers, ...other], things, {
@@ -207,7 +208,7 @@ export function roof(number, { rise = 1.2, set = {}, broken = false, origin = [0
 }
 
 /** The six faces of a box, with their front sides outwards. */
-function box(low, size) {
+export function box(low, size) {
   const at = (u, v, w) => [low[0] + size[0] * u, low[1] + size[1] * v, low[2] + size[2] * w];
   return [
     (u, v) => at(v, u, 0),

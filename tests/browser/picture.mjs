@@ -114,7 +114,7 @@ test('a section plane cuts, closed bodies are capped, and picks go past what is 
   await over(roof(1), async ({ page }) => {
     await page.locator('#picture').focus();
     await page.keyboard.press('s');
-    await until(page, (s) => s.caps === 1 && s.drawCalls === s.drawn.length + 3, 'the cap of the tank, in three calls');
+    await until(page, (s) => s.caps === 1 && s.drawCalls === s.drawn.length + 2, 'the cap of the tank, in two calls');
     await page.getByRole('slider', { name: 'Place of the section plane' }).fill('0.88');
     await page.waitForTimeout(200);
     await picture(page, 'page-section');

@@ -2,6 +2,7 @@
 
 import './wire.mjs';
 import './picture.mjs';
+import './sections.mjs';
 import './panes.mjs';
 import './frames.mjs';
 import './partial.mjs';

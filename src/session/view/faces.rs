@@ -6,18 +6,14 @@ use glam::DVec3;
 use serde_json::json;
 
 use super::buffer::{Buffer, Role, Writer};
+use super::held::patch_name;
 use super::lines::{self, Polyline};
 use crate::base::tolerance::Tolerance;
 use crate::draw::Sheet;
 use crate::draw::faces::{self as display, Show};
 use crate::draw::lines::track;
 use crate::lang::eval::scene::Scene;
-use crate::model::{Meeting, SurfaceId};
-
-/// How many faces meet on an edge, for its colour.
-const FREE: u8 = 1;
-const JOINED: u8 = 2;
-const CROWDED: u8 = 3;
+use crate::model::SurfaceId;
 
 /// Surfaces of a scene, `true` for the other side of one, as triangles not farther than `fine` from them, model units; `None` where
 /// there are none. Gives also how many patches have no triangles that can be drawn.
@@ -32,7 +28,7 @@ pub(super) fn triangles(scene: &Scene, ids: &[(SurfaceId, bool)], fine: f64) -> 
         place = if sheet.name == last { place + 1 } else { 0 };
         last = &sheet.name;
         let alone = place == 0 && sheets.get(k + 1).is_none_or(|next| next.name != sheet.name);
-        names.push(if alone { sheet.name.clone() } else { format!("{}.patches[{place}]", sheet.name) });
+        names.push(if alone { sheet.name.clone() } else { patch_name(&sheet.name, place) });
         if sheet.triangles.is_empty() || sheet.points.iter().any(|p| !p.is_finite()) {
             lost += 1;
             continue;
@@ -68,11 +64,7 @@ pub(super) fn triangles(scene: &Scene, ids: &[(SurfaceId, bool)], fine: f64) -> 
 pub(super) fn edges(scene: &Scene, members: &BTreeSet<SurfaceId>, near: f64, fine: f64, tolerance: &Tolerance) -> Option<Buffer> {
     let pieces = scene.model.edge_pieces(members, near, &scene.network, tolerance);
     let line = |(k, piece): (usize, &crate::model::EdgePiece)| {
-        let count = match piece.meeting {
-            Meeting::Free => FREE,
-            Meeting::Crowded => CROWDED,
-            _ => JOINED,
-        };
+        let count = u8::try_from(piece.surfaces.len()).unwrap_or(u8::MAX);
         Polyline { name: format!("edge {}", k + 1), points: track(&piece.track, piece.s, fine), length: piece.s.1 - piece.s.0, count }
     };
     lines::buffer(Role::Edges, &pieces.iter().enumerate().map(line).collect::<Vec<_>>())

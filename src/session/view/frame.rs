@@ -92,6 +92,8 @@ pub struct Thing {
     pub kind: &'static str,
     /// Names of the things in it.
     pub of: Vec<String>,
+    /// Names of the surfaces and patches in it that other things draw, as they stand in the headers of buffers.
+    pub surfaces: Vec<String>,
     /// The lines that made it: the one that a person would name first, then those that it went through.
     pub chain: Vec<Place>,
     /// What is known of it, ready to show.

@@ -9,9 +9,8 @@ use super::buffer::{Buffer, Role};
 use super::frame::{BufferRow, Place, Thing};
 use super::lines::{self, Polyline};
 use super::places::place;
-use super::{faces, meshes};
+use super::{faces, held, meshes};
 use crate::base::bbox::Box3;
-use crate::base::fault::Say;
 use crate::base::par;
 use crate::base::tolerance::Tolerance;
 use crate::draw::lines::chain as along;
@@ -178,7 +177,8 @@ pub(super) fn draw(cx: &mut Cx, symbols: &[Symbol], chord_error: Option<f64>, ev
             Shape::Curves(named) => curves(named, fine, &tolerance).into_iter().collect(),
             Shape::Surfaces(_) | Shape::Shell(_) => {
                 if let Shape::Shell(shell) = &shape {
-                    made = self::shell(cx, shell, &declared, fine, &tolerance, kept);
+                    let drawn = self::shell(cx, shell, &declared, fine, &tolerance, kept);
+                    (made, thing.surfaces) = drawn.map_or((None, Vec::new()), |(made, others)| (Some(made), others));
                 }
                 match &made {
                     None => thing.unmade = Some("it cannot be drawn".to_owned()),
@@ -296,22 +296,14 @@ fn add(cx: &mut Cx, declared: &DeclaredValue, name: &str, value: &Value, chain: 
         },
     };
     let of = match &shape {
-        Shape::Group(members) => members.iter().map(|member| name_of(cx, member)).filter(|name| !name.is_empty()).collect(),
+        Shape::Group(members) => members.iter().map(|member| held::name(cx, member)).filter(|name| !name.is_empty()).collect(),
         Shape::Shell(shell) => shell.surfaces.iter().map(|surface| cx.surface_name(surface)).collect(),
         Shape::Mesh(mesh) => mesh.faces.iter().map(|face| face.name.clone()).collect::<BTreeSet<String>>().into_iter().collect(),
         _ => Vec::new(),
     };
-    let thing = Thing { name: name.to_owned(), kind, of, chain: chain.to_vec(), visible, ..Thing::default() };
+    let surfaces = if is_group { held::surfaces(cx, value) } else { Vec::new() };
+    let thing = Thing { name: name.to_owned(), kind, of, surfaces, chain: chain.to_vec(), visible, ..Thing::default() };
     out.push(Item { thing, shape, declaration: declared.declaration });
-}
-
-fn name_of(cx: &Cx, value: &Value) -> String {
-    match value {
-        Value::Surface(surface) => cx.surface_name(surface),
-        Value::Curve(chain) => cx.name(chain.origin()),
-        Value::Shell(shell) => shell.name.to_string(),
-        _ => String::new(),
-    }
 }
 
 /// The box of everything.
@@ -355,24 +347,33 @@ fn curves(named: &[(String, Chain)], fine: f64, tolerance: &Tolerance) -> Option
     lines::buffer(Role::Lines, &lines)
 }
 
-/// The edges of a shell, and those of its surfaces that are nothing of their own.
-fn shell(cx: &mut Cx, shell: &ShellValue, declared: &[Surface], fine: f64, tolerance: &Tolerance, before: &Kept) -> Option<KeptFaces> {
+/// The edges of a shell, and those of its surfaces that are nothing of their own; gives also the names of the others.
+fn shell(
+    cx: &mut Cx,
+    shell: &ShellValue,
+    declared: &[Surface],
+    fine: f64,
+    tolerance: &Tolerance,
+    before: &Kept,
+) -> Option<(KeptFaces, Vec<String>)> {
     let glued = cx.glued(ModuleId::MAIN, shell).ok()?;
     let (own, near) = (&glued.shell.surfaces, glued.shell.near);
     let is_bare = |id: SurfaceId| {
         let surface = &glued.scene.model.surfaces[id.index()].surface;
         !declared.iter().any(|known| known.is(surface))
     };
-    let bare: Vec<(SurfaceId, bool)> = own.iter().copied().filter(|(id, _)| is_bare(*id)).collect();
+    let (bare, others): (Vec<(SurfaceId, bool)>, Vec<_>) = own.iter().copied().partition(|(id, _)| is_bare(*id));
+    let others = others.iter().map(|(id, _)| glued.scene.model.surfaces[id.index()].name.clone()).collect();
     // Which of its surfaces are bare is a part of what it is drawn as.
     let mut now = KeptFaces::new(&shell.surfaces, own, &glued.scene, near, fine);
     now.patches.extend(bare.iter().map(|(id, flipped)| (*flipped, vec![[f64::from(id.0); 4]])));
-    Some(now.drawn(before.faces.get(&*shell.name), || {
+    let drawn = now.drawn(before.faces.get(&*shell.name), || {
         let members: BTreeSet<SurfaceId> = own.iter().map(|(id, _)| *id).collect();
         let edges = faces::edges(&glued.scene, &members, near, fine, tolerance);
         let (skin, lost) = faces::triangles(&glued.scene, &bare, fine);
         (skin.into_iter().chain(edges).collect(), lost)
-    }))
+    });
+    Some((drawn, others))
 }
 
 /// The buffers of each item that is a surface; what is as it was in the frame before is taken over.

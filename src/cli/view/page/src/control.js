@@ -1,7 +1,9 @@
 // What a person can do, by name: commands of keys and buttons, and the ways from a table to the picture.
 
+import { closedBodies } from './bodies.js';
 import { STANDARD_VIEWS } from './camera.js';
 import { isView } from './navigation.js';
+import { keepsUpper } from './section.js';
 
 export function createControl(app, byId) {
   const { state, stage, model } = app;
@@ -27,7 +29,7 @@ export function createControl(app, byId) {
     fit: () => stage.fit(visibleBox()),
     'fit-chosen': () => zoom(chosenNames()),
     flat: () => stage.setView({ ...stage.view, flat: !stage.view.flat }),
-    section: () => state.set({ cut: state.get().cut ? null : { axis: 'x', share: 0.5, flip: false } }),
+    section: () => (state.get().cut ? state.set({ cut: null }) : cut({})),
     measure() {
       app.selection.measuring = !app.selection.measuring;
       model.measuring = app.selection.measuring;
@@ -62,6 +64,13 @@ export function createControl(app, byId) {
     } else COMMANDS[name]?.();
     app.toolbar.update(app.section.plane ? undefined : '');
     app.recolor();
+  }
+
+  /** Changes the section; one across another axis keeps what lies behind it. */
+  function cut(patch) {
+    const next = { axis: 'x', share: 0.5, ...state.get().cut, ...patch };
+    if (patch.axis || !state.get().cut) next.flip = keepsUpper(next.axis, stage.view);
+    state.set({ cut: next });
   }
 
   const visibleBox = () =>
@@ -121,6 +130,7 @@ export function createControl(app, byId) {
   return {
     refineSoon,
     run,
+    cut,
     tell,
     settle,
     zoom,
@@ -172,24 +182,12 @@ export function createControl(app, byId) {
       state.set({ tab: 'reports', right: true });
       app.panes.scrollToReport(report.name);
     },
-    /** Caps go on closed bodies that are shown and cut: those whose edges all have two faces or more. */
+    /** Caps go on closed bodies that are shown and cut. */
     async updateCaps() {
-      const bodies = [];
-      if (app.section.plane) {
-        for (const drawing of model.visible()) {
-          if (!drawing.isSolid) continue;
-          if (await isClosed(drawing, model)) bodies.push(drawing);
-        }
-      }
-      app.section.setCapped(bodies.filter((drawing) => model.drawings.includes(drawing) && drawing.object.visible));
+      const bodies = app.section.plane ? await closedBodies(model) : [];
+      const isThere = ({ drawing }) => model.drawings.includes(drawing) && drawing.object.visible;
+      app.section.setCapped(bodies.filter((body) => body.parts.every(isThere)));
       stage.invalidate();
     },
   };
-}
-
-async function isClosed(drawing, model) {
-  if (drawing.role === 'mesh') return (await drawing.buffer.find('sides')).counts.length === 0;
-  const edges = model.drawings.find((other) => other.name === drawing.name && other.role === 'edges');
-  const meeting = edges?.buffer.arrays.faces;
-  return Boolean(meeting?.length) && meeting.every((n) => n >= 2);
 }

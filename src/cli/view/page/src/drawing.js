@@ -1,10 +1,8 @@
 // What stands in the picture for one buffer of one thing: an object of three.js with uniforms of its own, one draw call.
 
 import {
-  BackSide,
   DataTexture,
   DoubleSide,
-  FrontSide,
   GLSL3,
   Mesh,
   NearestFilter,
@@ -126,7 +124,6 @@ export class Drawing {
     this.object.renderOrder = role === 'points' ? 4 : role === 'lines' ? 3 : this.isLine ? 2 : 1;
     this.uniforms = this.object.material.uniforms;
     this.texture = null;
-    this.passes = [];
   }
 
   get isLine() {
@@ -139,11 +136,8 @@ export class Drawing {
 
   /** Puts the object where it is relative to the scene's origin. */
   place(origin) {
-    const at = this.buffer.origin.map((o, i) => o - origin[i]);
-    for (const object of [this.object, ...this.passes]) {
-      object.matrix.setPosition(...at);
-      object.matrixWorldNeedsUpdate = true;
-    }
+    this.object.matrix.setPosition(...this.buffer.origin.map((o, i) => o - origin[i]));
+    this.object.matrixWorldNeedsUpdate = true;
   }
 
   set(values) {
@@ -180,48 +174,7 @@ export class Drawing {
     this.uniforms.colors.value = this.texture;
   }
 
-  /** The two passes that count in the stencil buffer how deep the section plane lies in a closed body. */
-  stencilPasses(stencilFunc, up, down) {
-    if (this.passes.length === 0) {
-      const pass = (side, operation) => {
-        const made = new Mesh(
-          this.buffer.geometry,
-          material(
-            lines.STENCIL_VERTEX,
-            lines.STENCIL_FRAGMENT,
-            {},
-            {
-              side,
-              colorWrite: false,
-              depthWrite: false,
-              depthTest: false,
-              stencilWrite: true,
-              stencilFunc,
-              stencilFail: operation,
-              stencilZFail: operation,
-              stencilZPass: operation,
-            },
-          ),
-        );
-        made.matrixAutoUpdate = false;
-        made.matrix.copy(this.object.matrix);
-        return made;
-      };
-      this.passes = [pass(BackSide, up), pass(FrontSide, down)];
-    }
-    return this.passes;
-  }
-
-  dropPasses() {
-    for (const pass of this.passes) {
-      pass.removeFromParent();
-      pass.material.dispose();
-    }
-    this.passes = [];
-  }
-
   dispose() {
-    this.dropPasses();
     this.object.removeFromParent();
     this.object.material.dispose();
     if (this.ownGeometry) this.object.geometry.dispose();

@@ -76,6 +76,24 @@ export function faceGeometry({ header, arrays }) {
   return enclose(geometry, header);
 }
 
+/** The triangles of some faces of a surface, over the same points. */
+export function onlyFaces({ geometry, arrays }, isKept) {
+  const all = geometry.index.array;
+  const kept = [];
+  for (let t = 0; t < all.length / 3; t++) if (isKept(arrays.face?.[t] ?? 0)) kept.push(all[3 * t], all[3 * t + 1], all[3 * t + 2]);
+  const made = new BufferGeometry();
+  for (const [name, attribute] of Object.entries(geometry.attributes)) made.setAttribute(name, attribute);
+  made.setIndex(new BufferAttribute(new Uint32Array(kept), 1));
+  made.boundingSphere = geometry.boundingSphere;
+  return made;
+}
+
+/** Lets go of a geometry that `onlyFaces` made, and not of the points, which others have. */
+export function release(geometry) {
+  for (const name of Object.keys(geometry.attributes)) geometry.deleteAttribute(name);
+  geometry.dispose();
+}
+
 /** Triangles of a mesh, quadrangles as two each: indices of nodes. */
 export function meshTriangles({ triangles, quads }) {
   const nt = triangles?.length ?? 0;

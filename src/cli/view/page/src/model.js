@@ -2,6 +2,7 @@
 
 import { Buffers } from './buffers.js';
 import { Drawing } from './drawing.js';
+import { FaceNames } from './face_names.js';
 
 /** Shades that say something about meshes only; with one of them meshes are shown instead of their surfaces. */
 export const MESH_SHADES = new Set(['mesh', 'quality-angle', 'quality-jacobian', 'quality-length', 'decided']);
@@ -16,6 +17,7 @@ export class Model {
     this.fitted = null; // The camera that was fitted to shapes, while the first evaluation runs.
     this.whole = null; // The last frame whose evaluation had ended.
     this.drawings = [];
+    this.faces = new FaceNames([]);
     this.compared = []; // Drawings of the other state of the model.
     this.newest = 0;
     this.times = {};
@@ -41,6 +43,7 @@ export class Model {
     if (!frame.partial) this.whole = frame;
     if (this.stage.setBox(frame.partial ? grown(this.stage.box, frame.box) : frame.box)) this.moved = true;
     this.drawings = this.renew(this.drawings, frame.things);
+    this.faces = new FaceNames(this.drawings);
     this.compared = this.renew(this.compared, frame.compare?.things ?? []);
     for (const drawing of this.compared) drawing.ghost = true;
     // What a partial frame leaves out may come again with the whole one.
@@ -89,7 +92,6 @@ export class Model {
     }
     for (const drawing of byName.values()) {
       drawing.object.removeFromParent();
-      drawing.dropPasses();
       this.leaving.push(drawing);
     }
     const surfaces = new Map(made.filter((drawing) => drawing.role === 'faces').map((drawing) => [drawing.name, drawing]));
@@ -98,6 +100,16 @@ export class Model {
       drawing.faceName = (n) => faces?.buffer.header.faces?.[n]?.name ?? null;
     }
     return made;
+  }
+
+  /** The faces that belong to a thing, as `{ drawing, faces }`: its own, where `faces` is null, and those that other things draw. */
+  partsOf(thing) {
+    const own = this.drawings.filter((drawing) => drawing.role === 'faces' && drawing.name === thing.name);
+    const others = new Map();
+    for (const name of thing.surfaces ?? [])
+      for (const [drawing, faces] of this.faces.of(name))
+        if (!own.includes(drawing)) others.set(drawing, new Set([...(others.get(drawing) ?? []), ...faces]));
+    return [...own.map((drawing) => ({ drawing, faces: null })), ...[...others].map(([drawing, faces]) => ({ drawing, faces }))];
   }
 
   thing(name) {

@@ -81,7 +81,7 @@ export function startPage() {
       shades.setBrush(null);
       state.set({ shade: name });
     },
-    cut: (patch) => state.set({ cut: { axis: 'x', share: 0.5, flip: false, ...state.get().cut, ...patch } }),
+    cut: (patch) => app.control.cut(patch),
     compare: (other) => app.comparison.ask(other),
     compared: () => app.comparison.shown,
     live: app.server.live,
