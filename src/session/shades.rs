@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::base::math;
 use crate::base::origin::Origin;
 use crate::draw::color::{BACK, BAD_TO_GOOD, BELOW_TO_ABOVE, FRONT, LITTLE_TO_MUCH, NAMES};
 use crate::draw::faces::{Bend, Show};
@@ -13,8 +14,10 @@ use crate::lang::eval::halt::Halt;
 use crate::lang::values::plans::PictureSpec;
 use crate::mesh::Mesh;
 
-/// Share of places whose curvature lies inside the scale: a few sharp places do not take all colours.
-const MOST_PLACES: f64 = 0.98;
+/// Share of the area that is bent whose curvature lies inside the scale: a few sharp places do not take all colours.
+const MOST: f64 = 0.95;
+/// The turn of the normal over the size of the model below which a place is flat, radians.
+const FLAT: f64 = 1e-4;
 
 fn word(spec: &PictureSpec) -> &str {
     spec.shade.as_ref().map_or("plain", |s| &s.0)
@@ -85,23 +88,46 @@ pub(super) fn paint(cx: &Cx, spec: &PictureSpec, drawing: &mut Drawing) -> Resul
     Ok(())
 }
 
-/// The scale of curvatures, as far to either side of zero as nearly all places are.
+/// The scale of curvatures, as far to either side of zero as nearly all of the area that is bent is.
 fn of_curvature(spec: &PictureSpec, drawing: &mut Drawing, of: Origin, unit: &str) -> Result<(), Halt> {
     needs(drawing, of, &format!("`shade: {}` colours surfaces, and none is drawn", word(spec)), "draw a surface or a shell")?;
-    let mut sizes: Vec<f64> = values(drawing).map(f64::abs).collect();
-    sizes.sort_by(f64::total_cmp);
-    let most = sizes.get(((sizes.len() as f64 - 1.0) * MOST_PLACES) as usize).copied().unwrap_or(0.0);
     let (title, power) = match bend(spec) {
         Some(Bend::Gauss) => ("Gauss curvature", 2),
         Some(Bend::Mean) => ("mean curvature", 1),
         _ => ("curvature", 1),
     };
     // A plane has no curvature; its scale is from −1 to 1.
-    let least = f64::from(f32::EPSILON) / crate::base::math::powi(drawn_size(drawing), power);
-    let most = if most > least { most } else { 1.0 };
+    let most = most(bent(drawing, math::powi(FLAT / drawn_size(drawing), power))).unwrap_or(1.0);
     let unit = if power == 1 { format!("1/{unit}") } else { format!("1/{unit}{power}") };
     drawing.scale = Some(Scale { title: title.to_owned(), unit, low: -most, high: most, ramp: BELOW_TO_ABOVE });
     Ok(())
+}
+
+/// Sizes of curvatures above `flat` with the areas that have them.
+fn bent(drawing: &Drawing, flat: f64) -> Vec<(f64, f64)> {
+    let mut found = Vec::new();
+    for sheet in &drawing.sheets {
+        let Paint::OfPoints(values) = &sheet.paint else { continue };
+        for corners in &sheet.triangles {
+            let [a, b, c] = corners.map(|k| sheet.points[k as usize]);
+            let area = (b - a).cross(c - a).length();
+            found.extend(corners.map(|k| (f64::from(values[k as usize]).abs(), area)));
+        }
+    }
+    found.retain(|(size, _)| size.is_finite() && *size > flat);
+    found
+}
+
+/// The size that nearly all of the area is below; `None` without area.
+fn most(mut places: Vec<(f64, f64)>) -> Option<f64> {
+    places.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let wanted = MOST * places.iter().map(|(_, area)| area).sum::<f64>();
+    let mut below = 0.0;
+    let inside = |(_, area): &&(f64, f64)| {
+        below += area;
+        below >= wanted
+    };
+    places.iter().find(inside).map(|(size, _)| *size)
 }
 
 fn drawn_size(drawing: &Drawing) -> f64 {
@@ -134,4 +160,18 @@ fn by_name(drawing: &mut Drawing) {
         sheet.paint = Paint::Even(NAMES[k % NAMES.len()]);
     }
     drawing.keys = found.into_iter().enumerate().map(|(k, name)| (NAMES[k % NAMES.len()], name)).collect();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A sharp edge has many points and hardly any area.
+    #[test]
+    fn the_scale_is_that_of_nearly_all_of_the_area() {
+        let sharp = (0..900).map(|_| (50.0, 0.001));
+        let places = sharp.chain((0..100).map(|k| (0.01 * f64::from(k), 1.0))).collect();
+        assert!((most(places).unwrap() - 0.95).abs() < 0.02);
+        assert_eq!(most(Vec::new()), None);
+    }
 }

@@ -3,6 +3,7 @@
 import './wire.mjs';
 import './picture.mjs';
 import './sections.mjs';
+import './shades.mjs';
 import './panes.mjs';
 import './frames.mjs';
 import './partial.mjs';

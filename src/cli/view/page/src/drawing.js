@@ -14,6 +14,7 @@ import {
   Vector2,
   Vector4,
 } from 'three';
+import { onlyFaces, release } from './geometry.js';
 import * as solids from './shaders_faces.js';
 import * as lines from './shaders_lines.js';
 import { colorOf, theme } from './theme.js';
@@ -60,7 +61,8 @@ function material(vertexShader, fragmentShader, uniforms, more) {
   });
 }
 
-const solid = { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 };
+/** Faces lie behind lines, and behind the elements of a mesh of them. */
+const behind = (steps) => ({ polygonOffset: true, polygonOffsetFactor: steps, polygonOffsetUnits: steps });
 
 const KINDS = {
   faces: (buffer) =>
@@ -70,7 +72,7 @@ const KINDS = {
         solids.FACE_VERTEX,
         solids.FACE_FRAGMENT,
         { range: { value: new Vector2(0, 1) }, which: { value: 0 }, hovered: { value: NONE }, chosen: { value: NONE } },
-        solid,
+        behind(2),
       ),
     ),
   mesh: (buffer) =>
@@ -85,7 +87,7 @@ const KINDS = {
           hovered: { value: -1 },
           chosen: { value: -1 },
         },
-        solid,
+        behind(1),
       ),
     ),
   points: (buffer) =>
@@ -124,6 +126,7 @@ export class Drawing {
     this.object.renderOrder = role === 'points' ? 4 : role === 'lines' ? 3 : this.isLine ? 2 : 1;
     this.uniforms = this.object.material.uniforms;
     this.texture = null;
+    this.shownFaces = '';
   }
 
   get isLine() {
@@ -155,6 +158,14 @@ export class Drawing {
     }
   }
 
+  /** Draws the faces alone of which `isKept` is true, or all of them; `key` tells whether they are those of the call before. */
+  showFaces(key = '', isKept = null) {
+    if (this.shownFaces === key) return;
+    if (this.shownFaces) release(this.object.geometry);
+    this.object.geometry = isKept ? onlyFaces(this.buffer, isKept) : this.buffer.geometry;
+    this.shownFaces = key;
+  }
+
   mark(which, item) {
     const none = this.role === 'points' || this.role === 'mesh' ? -1 : NONE;
     this.uniforms[which].value = item ?? none;
@@ -176,6 +187,7 @@ export class Drawing {
 
   dispose() {
     this.object.removeFromParent();
+    this.showFaces();
     this.object.material.dispose();
     if (this.ownGeometry) this.object.geometry.dispose();
     this.texture?.dispose();

@@ -31,3 +31,5 @@ export function elementsBeside(buffer, [a, b]) {
   });
   return [...found].sort((one, other) => one - other);
 }
+
+export const elementCount = ({ arrays }) => (arrays.triangles?.length ?? 0) / 3 + (arrays.quads?.length ?? 0) / 4;

@@ -18,6 +18,7 @@ export class Model {
     this.whole = null; // The last frame whose evaluation had ended.
     this.drawings = [];
     this.faces = new FaceNames([]);
+    this.meshed = new Map(); // Drawing to its faces of which there is a mesh.
     this.compared = []; // Drawings of the other state of the model.
     this.newest = 0;
     this.times = {};
@@ -44,6 +45,7 @@ export class Model {
     if (this.stage.setBox(frame.partial ? grown(this.stage.box, frame.box) : frame.box)) this.moved = true;
     this.drawings = this.renew(this.drawings, frame.things);
     this.faces = new FaceNames(this.drawings);
+    this.meshed = this.meshedFaces();
     this.compared = this.renew(this.compared, frame.compare?.things ?? []);
     for (const drawing of this.compared) drawing.ghost = true;
     // What a partial frame leaves out may come again with the whole one.
@@ -84,7 +86,7 @@ export class Model {
           drawing.thing = thing;
           // A shell lies on the surfaces that it holds: these are before it.
           if (thing.kind === 'shell' && drawing.isSolid)
-            drawing.object.material.polygonOffsetFactor = drawing.object.material.polygonOffsetUnits = 2;
+            drawing.object.material.polygonOffsetFactor = drawing.object.material.polygonOffsetUnits = 3;
           drawing.place(this.stage.origin);
           made.push(drawing);
         }
@@ -104,7 +106,7 @@ export class Model {
 
   /** The faces that belong to a thing, as `{ drawing, faces }`: its own, where `faces` is null, and those that other things draw. */
   partsOf(thing) {
-    const own = this.drawings.filter((drawing) => drawing.role === 'faces' && drawing.name === thing.name);
+    const own = this.faces.drawingsOf(thing.name);
     const others = new Map();
     for (const name of thing.surfaces ?? [])
       for (const [drawing, faces] of this.faces.of(name))
@@ -124,21 +126,41 @@ export class Model {
     const meshed = this.frame.things.some((other) => other.kind === 'mesh');
     if (MESH_SHADES.has(shade) && meshed) {
       if (thing.kind === 'mesh') return true;
-      if (thing.kind === 'surface' || thing.kind === 'shell') return !this.isMeshed(thing.name);
+      if (thing.kind === 'surface' || thing.kind === 'shell') return !this.isMeshed(thing);
     }
     return thing.visible !== false;
   }
 
-  /** Whether a mesh is there of a thing, of something that holds it, or of all that it holds. */
-  isMeshed(name) {
-    const { things } = this.frame;
-    const parts = this.thing(name)?.of ?? [];
-    return things.some((mesh) => {
-      if (mesh.kind !== 'mesh' || mesh.unmade || isAwaited(mesh)) return false;
-      const of = mesh.of ?? [];
-      if (of.some((one) => one === name || this.thing(one)?.of?.includes(name))) return true;
-      return parts.length > 0 && parts.every((part) => of.includes(part));
-    });
+  /** Faces of which there is a mesh, by their drawing. */
+  meshedFaces() {
+    const found = new Map();
+    for (const { role, thing, buffer } of this.drawings) {
+      if ((role !== 'mesh' && role !== 'bars') || thing.unmade) continue;
+      for (const { name } of buffer.header.faces ?? [])
+        for (const [drawing, faces] of this.faces.of(name)) {
+          if (!found.has(drawing)) found.set(drawing, new Set());
+          for (const face of faces) found.get(drawing).add(face);
+        }
+    }
+    return found;
+  }
+
+  /** Whether meshes are there of all faces of a thing. */
+  isMeshed(thing) {
+    const parts = this.partsOf(thing);
+    return parts.length > 0 && parts.every(({ drawing, faces }) => this.areMeshed(drawing, faces ?? facesOf(drawing)));
+  }
+
+  areMeshed(drawing, faces) {
+    const meshed = this.meshed.get(drawing);
+    return Boolean(meshed) && [...faces].every((face) => meshed.has(face));
+  }
+
+  /** The faces that a drawing leaves out because their mesh is shown instead, or null where it leaves out none. */
+  leftOut(drawing) {
+    const { shown, only, shade } = this.state.get();
+    if (!MESH_SHADES.has(shade) || only || drawing.name in shown || drawing.role !== 'faces') return null;
+    return this.meshed.get(drawing) ?? null;
   }
 
   visible() {
@@ -169,6 +191,8 @@ export class Model {
       .map((thing) => thing.name);
   }
 }
+
+const facesOf = (drawing) => (drawing.buffer.header.faces ?? []).keys();
 
 /** Whether a thing is still to be made and was not there before. */
 export const isAwaited = (thing) => Boolean(thing.pending) && !(thing.buffers?.length > 0);

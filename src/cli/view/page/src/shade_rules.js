@@ -2,8 +2,9 @@
 
 import { BufferAttribute } from 'three';
 import { decidersOf, NOT_KNOWN } from './deciders.js';
-import { inRanges } from './described.js';
+import { elementCount } from './elements.js';
 import { MEASURES } from './quality.js';
+import { paintGroups } from './shade_groups.js';
 import { ask } from './tasks.js';
 import { goodness, paletteColor, rgb, theme } from './theme.js';
 
@@ -25,8 +26,6 @@ function paint(drawing, count, color) {
 
 const UNKNOWN = [0.6, 0.6, 0.6]; // Elements of which a shade can say nothing.
 
-const elementCount = ({ arrays }) => (arrays.triangles?.length ?? 0) / 3 + (arrays.quads?.length ?? 0) / 4;
-
 /** Each is called with the shades as `this`; one that measures first is a promise. */
 export const RULES = {
   patch(legend) {
@@ -42,28 +41,7 @@ export const RULES = {
   },
 
   group(legend) {
-    const groups = this.model.frame.things.filter((thing) => thing.kind === 'group').map((thing) => thing.name);
-    for (const drawing of this.solids('mesh'))
-      for (const { name } of drawing.buffer.header.groups ?? []) if (!groups.includes(name)) groups.push(name);
-    const color = (name) => rgb(paletteColor(groups.indexOf(name)));
-    const pale = rgb(theme.dark ? '#59636e' : '#cfd6dd');
-    for (const drawing of this.model.drawings) {
-      const mine = this.model.frame.things.find((thing) => thing.kind === 'group' && thing.of?.includes(drawing.name));
-      if (drawing.role !== 'mesh') {
-        if (mine && drawing.role !== 'edges') drawing.set({ color: paletteColor(groups.indexOf(mine.name)) });
-        else if (drawing.role === 'faces') drawing.set({ color: theme.dark ? '#59636e' : '#cfd6dd' });
-        continue;
-      }
-      const { header } = drawing.buffer;
-      const first = header.first_element ?? 1;
-      const owner = (i) => (header.groups ?? []).find((group) => inRanges(group.elements, i + first));
-      paint(drawing, elementCount(drawing.buffer), (i) => {
-        const group = owner(i);
-        return group ? color(group.name) : mine ? color(mine.name) : pale;
-      });
-    }
-    legend.entries = groups.map((name) => ({ name, color: paletteColor(groups.indexOf(name)) }));
-    if (!groups.length) legend.note = 'The model has no groups.';
+    paintGroups(this.model, legend, paint);
   },
 
   mesh(legend) {
@@ -221,21 +199,46 @@ export const RULES = {
   },
 };
 
+// The share of the area that is bent whose curvature lies inside the scale: a few sharp places do not take all colours.
+const MOST = 0.95;
+// The turn of the normal over the size of the model below which a place is flat.
+const FLAT = 1e-4;
+
 function curvature(legend, which) {
-  const sample = [];
   const drawn = this.solids('faces').filter((drawing) => drawing.buffer.arrays.curvature);
-  for (const drawing of drawn) {
-    const { curvature: values } = drawing.buffer.arrays;
-    const step = Math.max(1, Math.floor(values.length / 2 / 4000));
-    for (let i = 0; i < values.length / 2; i += step)
-      if (Number.isFinite(values[2 * i + which])) sample.push(Math.abs(values[2 * i + which]));
-  }
-  sample.sort((a, b) => a - b);
-  const reach = sample[Math.floor(sample.length * 0.96)] ?? 0;
+  const flat = (FLAT / (2 * this.stage.sphere().radius)) ** (which === 0 ? 2 : 1);
+  const reach = reachOf(
+    drawn.filter((drawing) => drawing.object.visible).flatMap((drawing) => bent(drawing.buffer.arrays, which, flat)),
+  );
   for (const drawing of drawn) {
     drawing.set({ mode: 2, which, range: [0, reach || 1e-9] });
   }
   const units = this.model.frame.units;
   legend.scale = { from: -reach, to: reach, kind: 'ramp', unit: which === 0 ? `1/${units}²` : `1/${units}` };
   if (!drawn.length) Object.assign(legend, { scale: null, note: 'No surface that is shown has curvature.' });
+}
+
+/** Sizes of curvatures above `flat` with the areas that have them, of some thousand triangles. */
+function bent({ positions: p, triangles, curvature: values }, which, flat) {
+  const found = [];
+  const step = Math.max(1, Math.floor(triangles.length / 3 / 4000));
+  for (let t = 0; t < triangles.length / 3; t += step) {
+    const corners = triangles.subarray(3 * t, 3 * t + 3);
+    const [a, b, c] = corners;
+    const [u, v] = [b, c].map((k) => [0, 1, 2].map((i) => p[3 * k + i] - p[3 * a + i]));
+    const area = step * Math.hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]);
+    for (const k of corners) {
+      const size = Math.abs(values[2 * k + which]);
+      if (size > flat && size < Infinity) found.push({ size, area });
+    }
+  }
+  return found;
+}
+
+/** The size that nearly all of the area is below. */
+function reachOf(places) {
+  places.sort((a, b) => a.size - b.size);
+  const wanted = MOST * places.reduce((sum, { area }) => sum + area, 0);
+  let below = 0;
+  return places.find(({ area }) => (below += area) >= wanted)?.size ?? 0;
 }

@@ -37,7 +37,9 @@ export class Shades {
     for (const drawing of this.model.drawings) {
       const { thing } = drawing;
       drawing.object.visible = this.model.isShown(thing);
-      drawing.filter = null;
+      const leftOut = this.model.leftOut(drawing);
+      drawing.filter = leftOut && ((face) => !leftOut.has(face));
+      if (drawing.role === 'faces') drawing.showFaces(leftOut ? [...leftOut].join() : '', drawing.filter);
       const own = colors[thing.name] ?? thing.color;
       const base = drawing.isLine
         ? drawing.role === 'edges'
