@@ -388,9 +388,9 @@ fn parts_that_are_not_the_surface_are_refused() {
     let tube = swept(circle(DVec3::ZERO, 1.0, DVec3::Z, Origin::NONE));
     let whole = measure::area(&tube);
     let cut = [chain(circle(DVec3::Z, 1.0, DVec3::Z, Origin::NONE))];
-    measure::adds_up(&tube, &cut, &[0.25 * whole, 0.75 * whole], &tolerance).unwrap();
+    measure::adds_up(&tube, &cut, &[(0.25 * whole, 0.0), (0.75 * whole, 0.0)], &tolerance).unwrap();
     for parts in [&[0.25 * whole, 0.74 * whole][..], &[whole, 1e-4 * whole], &[0.5 * whole], &[]] {
-        let fault = measure::adds_up(&tube, &cut, parts, &tolerance).unwrap_err();
+        let fault = measure::adds_up(&tube, &cut, &parts.iter().map(|area| (*area, 0.0)).collect::<Vec<_>>(), &tolerance).unwrap_err();
         assert!(matches!(fault.of(), Some(CutFault::PartsNotWhole { .. })), "{parts:?}: {fault:?}");
     }
 }

@@ -312,7 +312,10 @@ fn parts_that_do_not_add_up_are_told() {
     let side = Chain::of_curve(&line(DVec3::ZERO, DVec3::X * 10.0, Origin::NONE).unwrap());
     let square = extrude(&side, DVec3::Y * 10.0, Origin::NONE, &tolerance).unwrap();
     let cut = Chain::of_curve(&line(DVec3::new(0.0, 4.0, 0.0), DVec3::new(10.0, 4.0, 0.0), Origin::NONE).unwrap());
-    let told = |parts: &[f64]| measure::adds_up(&square, std::slice::from_ref(&cut), parts, &tolerance).map_err(|fault| fault.code().0);
+    let told = |parts: &[f64]| {
+        measure::adds_up(&square, std::slice::from_ref(&cut), &parts.iter().map(|area| (*area, 0.0)).collect::<Vec<_>>(), &tolerance)
+            .map_err(|fault| fault.code().0)
+    };
     assert_eq!(told(&[40.0, 60.0]), Ok(()));
     // A strip as wide as the tolerance along the cut may be missing, or be in both parts.
     assert_eq!((told(&[40.0, 59.991]), told(&[40.009, 60.0])), (Ok(()), Ok(())));

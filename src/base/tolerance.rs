@@ -54,6 +54,8 @@ pub const COSINE_ROUNDING: f64 = 1e-9;
 pub const MEASURE_ACCURACY: f64 = 1e-10;
 /// Relative errors of integrals up to which what does not fall from one size of cells to the next is rounding.
 pub const MEASURE_ROUNDING: f64 = 1e-8;
+/// Relative errors of measures from which on they are told.
+pub const MEASURE_TOLD: f64 = 1e-6;
 /// What is integrated counts as at least this share of what it could be with the same lengths: below that it is rounding.
 pub const LEAST_SIZE: f64 = 1e-4;
 /// Relative error of a volume of which only the sign is wanted, where the body is not thin.
@@ -136,6 +138,8 @@ pub const FLOAT_ALONG: f64 = 1e-7;
 pub const FLOAT_AT_REST: f64 = 1e-12;
 /// The same where rounds do not lower them any more.
 pub const FLOAT_NEARLY_AT_REST: f64 = 1e-9;
+/// How far the net that stands for a face of a floating body may be off, as a share of the reach of the body.
+pub const FLOAT_NET: f64 = 1e-9;
 /// Difference of two rules that ends a cell of a floating body, as a share of its area times the powers of the reach of the body.
 pub const FLOAT_CELL: f64 = 1e-10;
 /// The same where a rule of more points does not come nearer: the face is less than analytic there.

@@ -168,6 +168,13 @@ pub fn uncharged<T>(work: impl FnOnce() -> T) -> T {
     work()
 }
 
+/// Runs `work` without charging anyone, with a budget that counts what it has spent so far and is never exceeded.
+pub fn metered<T>(work: impl FnOnce(&Budget) -> T) -> T {
+    let meter = Budget::new(u64::MAX);
+    let _charging = Charging::to(Some(meter.clone()));
+    work(&meter)
+}
+
 /// Runs `work` at the charge of whoever is charged already, and says how many units it took.
 pub fn measured<T>(work: impl FnOnce() -> T) -> (T, u64) {
     let part = Budget::part_of(budget());

@@ -18,6 +18,7 @@ use crate::base::fault::Result;
 use crate::base::par;
 use crate::base::quadrature::integrate;
 use crate::base::tolerance::{LEAST_SIZE, MEASURE_ACCURACY, SIGN_ACCURACY, TOLD_APART, Tolerance};
+use crate::base::work;
 use crate::network::Chain;
 use crate::surface::faults::CutFault;
 use crate::surface::{Domain, Jet2, Surface, SurfaceKind, bbox, boxed, chain_breaks};
@@ -58,6 +59,11 @@ pub fn areas(surfaces: &[Surface]) -> Vec<f64> {
     par::map(surfaces.len(), |k| area(&surfaces[k]))
 }
 
+/// Areas of surfaces and the estimates of their errors, each as [`area_within`] has it.
+pub fn areas_within(surfaces: &[Surface]) -> Vec<(f64, f64)> {
+    par::map(surfaces.len(), |k| area_within(&surfaces[k]))
+}
+
 /// Area of one surface as [`area`] has it, and the estimate of its error, both square model units.
 pub fn area_within(surface: &Surface) -> (f64, f64) {
     surface.area_once(|| {
@@ -66,17 +72,18 @@ pub fn area_within(surface: &Surface) -> (f64, f64) {
     })
 }
 
-/// Fails with E721 where the areas of the parts into which curves divide a surface do not add up to its own, within its accuracy and
-/// what vertices that are one within tolerances may take from each part, and a strip as wide as the tolerance along each cut, which is
+/// Fails with E721 where the areas of the parts into which curves divide a surface, each with its error, do not add up to its own, within
+/// the errors of all and what vertices that are one within tolerances may take from each part, and a strip as wide as the tolerance along each cut, which is
 /// within that of the surface.
-pub fn adds_up(whole: &Surface, cuts: &[Chain], parts: &[f64], tolerance: &Tolerance) -> Result<()> {
+pub fn adds_up(whole: &Surface, cuts: &[Chain], parts: &[(f64, f64)], tolerance: &Tolerance) -> Result<()> {
     /// Area about a vertex, in squares of the distance within which ends are one vertex, and share of the whole.
     const ROOM: (f64, f64) = (4.0, 1e3 * MEASURE_ACCURACY);
-    let ((own, error), sum) = (area_within(whole), parts.iter().sum::<f64>());
+    let (own, error) = area_within(whole);
+    let (sum, errors) = parts.iter().fold((0.0, 0.0), |sum, part| (sum.0 + part.0, sum.1 + part.1));
     let vertex = TOLD_APART * tolerance.point;
     let vertices = (whole.n_sides() + 2 * (cuts.len() + parts.len())) as f64;
     let strips = tolerance.point * cuts.iter().map(Chain::length).sum::<f64>();
-    let room = ROOM.0 * vertices * vertex * vertex + strips + ROOM.1 * own + error;
+    let room = ROOM.0 * vertices * vertex * vertex + strips + ROOM.1 * own + error + errors;
     if whole.domain() == Domain::Unbounded || (sum - own).abs() <= room {
         return Ok(());
     }
@@ -91,7 +98,7 @@ pub fn area_between(surface: &Surface, part: Rectangle) -> f64 {
         return area(surface);
     }
     let size = |jet: &Jet2| [jet.du.cross(jet.dv).length()];
-    integral(surface, part, MEASURE_ACCURACY, Integrand { value: &size, size: &size }).0[0]
+    work::metered(|meter| integral(surface, part, MEASURE_ACCURACY, Integrand { value: &size, size: &size }, meter)).0[0]
 }
 
 /// Centre of the length of a curve.
@@ -197,17 +204,17 @@ pub fn over<const N: usize>(surface: &Surface, about: DVec3, accuracy: f64, f: &
         std::array::from_fn(|i| value[i].abs() + LEAST_SIZE * most[i].abs())
     };
     let integrand = Integrand { value: &at, size: &sized };
-    match (surface.domain(), surface.kind()) {
+    work::metered(|meter| match (surface.domain(), surface.kind()) {
         (Domain::Unbounded, _) => ([0.0; N], [0.0; N]),
         (_, SurfaceKind::Plane) => flat_integral(surface, accuracy, integrand),
         (_, SurfaceKind::Scatter) => triangles_integral(surface, &surface.triangles(), accuracy, &at),
         _ if surface.is_flat() => flat_integral(surface, accuracy, integrand),
         (Domain::Loop, _) => {
             let patchwise = if surface.is_scattered() { cut_triangles_integral(surface, accuracy, &at) } else { None };
-            patchwise.unwrap_or_else(|| trimmed_integral(surface, accuracy, integrand, None))
+            patchwise.unwrap_or_else(|| trimmed_integral(surface, accuracy, integrand, None, meter))
         }
-        _ => integral(surface, WHOLE, accuracy, integrand),
-    }
+        _ => integral(surface, WHOLE, accuracy, integrand, meter),
+    })
 }
 
 /// The integral of `f(jet, p − about)` over what lies below a plane of a trimmed surface that is not flat, with its error estimate.
@@ -220,7 +227,7 @@ pub fn trimmed_below<const N: usize>(
 ) -> ([f64; N], [f64; N]) {
     let at = |jet: &Jet2| f(jet, jet.p - about);
     let size = |jet: &Jet2| f(jet, jet.p - about).map(f64::abs);
-    trimmed_integral(surface, accuracy, Integrand { value: &at, size: &size }, Some(below))
+    work::metered(|meter| trimmed_integral(surface, accuracy, Integrand { value: &at, size: &size }, Some(below), meter))
 }
 
 /// What f gives where the normal and the arm are as long as they are, along one diagonal.

@@ -1,18 +1,31 @@
-//! When an integral is done that is found by halving cells.
+//! Integrals that are found by halving: parts of one size after the other, until all together are exact enough.
 
-use super::measure_quadrature::Sums;
+use super::measure_quadrature::{Sums, add, small};
 use crate::base::tolerance::MEASURE_ROUNDING;
+use crate::base::work::Budget;
 
-/// Errors that fall by less than this from one size of cells to the next do not fall, and so often in a row that they never will.
+/// Errors that fall by less than this from one size of parts to the next do not fall, and so often in a row that they never will.
 const STALLED: f64 = 0.9;
 const STALLS: u32 = 2;
+/// Units of work after which an integral is left as exact as it then is.
+const WORK: u64 = 8_000_000;
 
-/// How the errors of an integral fall from one size of cells to the next.
+/// How the errors of an integral fall from one size of parts to the next.
 pub struct Progress<const N: usize> {
     accuracy: f64,
     scale: Sums<N>,
     before: f64,
     stalls: u32,
+}
+
+/// What a part comes to, by rules that differ by so much.
+pub struct Part<const N: usize> {
+    pub value: Sums<N>,
+    pub apart: Sums<N>,
+    /// What the rules may differ by, for the part to be done.
+    pub limit: Sums<N>,
+    /// It is not halved further.
+    pub last: bool,
 }
 
 impl<const N: usize> Progress<N> {
@@ -28,6 +41,43 @@ impl<const N: usize> Progress<N> {
         self.stalls = if now > STALLED * self.before { self.stalls + 1 } else { 0 };
         self.before = now;
         now <= self.accuracy || self.stalls >= STALLS && now <= MEASURE_ROUNDING
+    }
+
+    /// The sums over parts that `halves` cuts in `pieces` each, and what they are off by; no more than `most` parts are looked at.
+    ///
+    /// Parts of one size come after those of another: where there are too many, what is left is of one size everywhere.
+    pub fn sum<T, I: IntoIterator<Item = T>>(
+        mut self,
+        mut open: Vec<T>,
+        (most, pieces): (usize, usize),
+        meter: &Budget,
+        mut measure: impl FnMut(&T) -> Part<N>,
+        halves: impl Fn(T) -> I,
+    ) -> (Sums<N>, Sums<N>) {
+        let (mut sum, mut error, mut seen) = ([0.0; N], [0.0; N], 0);
+        while !open.is_empty() {
+            let mut rough = Vec::new();
+            for part in open {
+                let Part { value, apart, limit, last } = measure(&part);
+                if small(&apart, &limit) || last {
+                    add(&mut sum, &value);
+                    add(&mut error, &apart);
+                } else {
+                    rough.push((part, value, apart));
+                }
+                seen += 1;
+            }
+            let left = rough.iter().fold(error, |all, (_, _, apart)| std::array::from_fn(|i| all[i] + apart[i]));
+            if self.is_over(&left) || seen + pieces * rough.len() > most || meter.spent() > WORK {
+                rough.iter().for_each(|(_, value, apart)| {
+                    add(&mut sum, value);
+                    add(&mut error, apart);
+                });
+                break;
+            }
+            open = rough.into_iter().flat_map(|(part, ..)| halves(part)).collect();
+        }
+        (sum, error)
     }
 }
 

@@ -1,9 +1,10 @@
 //! Integrals over surfaces: Gauss–Legendre products of rising order, cell by cell, halved where that is not enough.
 
-use super::measure_progress::Progress;
+use super::measure_progress::{Part, Progress};
 use crate::base::job;
 use crate::base::quadrature::gauss_legendre;
 use crate::base::tolerance::{EPSILON, NUDGE};
+use crate::base::work::Budget;
 use crate::surface::{Domain, Jet2, Surface};
 
 /// Orders of the rules tried one after the other on a cell.
@@ -70,6 +71,7 @@ pub fn integral<const N: usize>(
     within: Rectangle,
     accuracy: f64,
     integrand: Integrand<impl Fn(&Jet2) -> Sums<N>, impl Fn(&Jet2) -> Sums<N>>,
+    meter: &Budget,
 ) -> (Sums<N>, Sums<N>) {
     let ((us, vs), kinks) = (surface.breaks(), surface.kinks());
     // A triangle's lines do not follow the square.
@@ -92,39 +94,18 @@ pub fn integral<const N: usize>(
     }
     // Where the first division has many cells each of them may still be halved.
     let most = MOST_CELLS.max(2 * open.len());
-    let mut open: Vec<(Cell, Vec<Sums<N>>, Sums<N>)> =
+    let open: Vec<(Cell, Vec<Sums<N>>, Sums<N>)> =
         open.into_iter().zip(known).zip(allowed).map(|((cell, known), limit)| (cell, known, limit)).collect();
-    let (mut sum, mut error, mut seen) = ([0.0; N], [0.0; N], 0);
-    let mut progress = Progress::new(accuracy, scale);
-    // Cells of one size after the other: where there are too many, what is left is of one size everywhere.
-    while !open.is_empty() {
-        let mut rough = Vec::new();
-        for (cell, start, limit) in open {
-            job::poll();
-            let (value, apart) = measured(&rules, &start, &limit, |k| product(surface, &cell, &rules[k], integrand.value));
-            if small(&apart, &limit) || cell.depth >= MAX_DEPTH {
-                add(&mut sum, &value);
-                add(&mut error, &apart);
-            } else {
-                rough.push((cell, value, apart, limit));
-            }
-            seen += 1;
-        }
-        let left = rough.iter().fold(error, |all, (_, _, apart, _)| std::array::from_fn(|i| all[i] + apart[i]));
-        if progress.is_over(&left) || seen + 4 * rough.len() > most {
-            rough.iter().for_each(|(_, value, apart, _)| {
-                add(&mut sum, value);
-                add(&mut error, apart);
-            });
-            break;
-        }
-        let halves = |(cell, _, _, limit): (Cell, Sums<N>, Sums<N>, Sums<N>)| {
-            let limit = std::array::from_fn(|i| share * scale[i] + 0.25 * (limit[i] - share * scale[i]));
-            cell.quarters().map(|quarter| (quarter, Vec::new(), limit))
-        };
-        open = rough.into_iter().flat_map(halves).collect();
-    }
-    (sum, error)
+    let measure = |(cell, start, limit): &(Cell, Vec<Sums<N>>, Sums<N>)| {
+        job::poll();
+        let (value, apart) = measured(&rules, start, limit, |k| product(surface, cell, &rules[k], integrand.value));
+        Part { value, apart, limit: *limit, last: cell.depth >= MAX_DEPTH }
+    };
+    let halves = |(cell, _, limit): (Cell, Vec<Sums<N>>, Sums<N>)| {
+        let limit = std::array::from_fn(|i| share * scale[i] + 0.25 * (limit[i] - share * scale[i]));
+        cell.quarters().map(|quarter| (quarter, Vec::new(), limit))
+    };
+    Progress::new(accuracy, scale).sum(open, (most, 4), meter, measure, halves)
 }
 
 /// The integrals over a cell by rules of rising order, the first of them known, until they are settled or show that the function is

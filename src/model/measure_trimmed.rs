@@ -3,24 +3,32 @@
 use glam::DVec2;
 
 use super::measure_below::{Below, crossings};
-use super::measure_quadrature::{Integrand, Sums, add};
-use super::measure_strips::Strips;
+use super::measure_progress::{Part, Progress};
+use super::measure_quadrature::{Integrand, Sums, add, small};
+use super::measure_strips::{Rules, Strips};
 use crate::base::job;
 use crate::base::quadrature::gauss_legendre;
-use crate::base::tolerance::EPSILON;
-use crate::base::work;
+use crate::base::work::{self, Budget};
 use crate::network::Chain;
-use crate::surface::{Evaluator, Jet2, Side, Surface, chain_breaks};
+use crate::surface::{Domain, Evaluator, Jet2, Side, Surface, chain_breaks};
 
 /// Points of the rules along a border, the first pair for runs between breaks only, and across the surface.
 const ALONG: [[usize; 2]; 2] = [[4, 6], [8, 12]];
 const ACROSS: usize = 12;
+/// Points of the rule that the one across has to agree with, and to which share of the accuracy asked for.
+const CHECKED: (usize, f64) = (8, 0.1);
+/// Integrals across begin at one of so many even steps over the box of the borders.
+const BASES: f64 = 32.0;
+/// Borders may leave the box of the places that are known of them by this share of its size.
+const ROOM: f64 = 1.0 / 64.0;
 /// Where between two values of u a function's size is looked at: no places that are special for anything.
 const SIZED: [f64; 3] = [0.13, 0.46, 0.89];
 /// Units of work that a place of a scattered surface takes beside the one of a curve: the triangle that holds it has to be found.
 const DEAR: u64 = 3;
 /// A run of a border is halved at most so often.
 const MAX_DEPTH: u32 = 14;
+/// Runs of borders examined in all.
+const MOST_RUNS: usize = 1 << 13;
 
 /// A border: the chain that carries it, or a line in (u, v).
 enum Way {
@@ -61,7 +69,7 @@ struct Green<'a, const N: usize, F, S> {
     closed_v: bool,
     /// The rule along u.
     across: Vec<(f64, f64)>,
-    strips: Option<Strips<N>>,
+    strips: Strips<N>,
     /// The plane below which alone the surface counts.
     below: Option<Below>,
 }
@@ -71,37 +79,48 @@ where
     F: Fn(&Jet2) -> Sums<N>,
     S: Fn(&Jet2) -> Sums<N>,
 {
-    fn new(evaluator: Evaluator<'a>, integrand: Integrand<'a, F, S>, below: Option<Below>) -> Self {
+    fn new(evaluator: Evaluator<'a>, accuracy: f64, integrand: Integrand<'a, F, S>, below: Option<Below>) -> Self {
         let surface = evaluator.surface();
-        let outlines = surface.outlines();
-        // From the middle of each loop; round a closed loop any start serves.
-        let middle = |outline: &Vec<DVec2>| {
-            let (low, high) = outline.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| (l.min(p.x), h.max(p.x)));
-            0.5 * (low + high)
+        let (breaks, closed, outlines) = (surface.breaks(), surface.closed(), surface.outlines());
+        let extent = |points: &mut dyn Iterator<Item = DVec2>| {
+            points.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)))
         };
-        let bases: Vec<f64> = outlines.iter().zip(surface.loops()).flat_map(|(o, n)| std::iter::repeat_n(middle(o), n)).collect();
-        let mut made = Self {
+        let (low, high) = extent(&mut outlines.iter().flatten().copied());
+        // From the middle of each loop; round a closed loop any start serves.
+        let step = (high.x - low.x) / BASES;
+        let base = |outline: &Vec<DVec2>| {
+            let (left, right) = extent(&mut outline.iter().copied());
+            if step > 0.0 { low.x + step * ((0.5 * (left.x + right.x) - low.x) / step).round() } else { 0.0 }
+        };
+        let bases: Vec<f64> = outlines.iter().zip(surface.loops()).flat_map(|(o, n)| std::iter::repeat_n(base(o), n)).collect();
+        let us = cuts(&breaks.0, (low.x, high.x), closed.0, &bases);
+        let vs = cuts(&breaks.1, (low.y, high.y), closed.1, &[]);
+        let across = gauss_legendre(ACROSS);
+        let cost = if surface.is_scattered() { DEAR } else { 0 };
+        let value = |u: f64, v: f64| {
+            let jet = first_jet(evaluator, cost, u, v);
+            ((integrand.value)(&jet), (integrand.size)(&jet))
+        };
+        let rules = Rules { coarse: &gauss_legendre(CHECKED.0), fine: &across, accuracy: CHECKED.1 * accuracy };
+        // A triangle's rows are not all as long.
+        let is_triangle = surface.ground() == Domain::Triangle;
+        let strips = if is_triangle { Strips::plain((&us, &vs)) } else { Strips::new((&us, &vs), rules, &value) };
+        Self {
             integrand,
             evaluator,
-            cost: if surface.is_scattered() { DEAR } else { 0 },
-            ways: (0..surface.n_sides()).filter_map(|k| Some((bases[k], Way::of(surface, k)?))).collect(),
-            breaks: surface.breaks(),
-            closed_v: surface.closed().1,
-            across: gauss_legendre(ACROSS),
-            strips: None,
+            cost,
+            ways: ways(evaluator, &bases),
+            breaks,
+            closed_v: closed.1,
+            strips: if below.is_some() { strips.untold() } else { strips },
+            across,
             below,
-        };
-        if below.is_none() && outlines.iter().flatten().all(|p| (-EPSILON..=1.0 + EPSILON).contains(&p.x)) {
-            made.strips = Strips::new((&made.breaks.0, &made.breaks.1), &made.across, &|u, v| (made.integrand.value)(&made.jet(u, v)));
         }
-        made
     }
 
     /// Point and first derivatives: nothing here takes second ones, which are left out.
     fn jet(&self, u: f64, v: f64) -> Jet2 {
-        work::spend(self.cost);
-        let [p, du, dv] = self.evaluator.tangents(u, v);
-        Jet2 { p, du, dv, ..Jet2::default() }
+        first_jet(self.evaluator, self.cost, u, v)
     }
 
     /// ∫ f du between two places without a break, of what counts.
@@ -130,29 +149,7 @@ where
 
     /// F: ∫ f du from a base.
     fn along_u(&self, base: f64, at: DVec2) -> Sums<N> {
-        if let Some(strips) = &self.strips {
-            // The table holds one turn: where a border runs over the seam it is the same a turn away.
-            let turn = if self.closed_v && !(0.0..=1.0).contains(&at.y) { at.y.floor() } else { 0.0 };
-            return strips.from(strips.nearest(base), at - DVec2::new(0.0, turn), |low, high| self.part(low, high, at.y));
-        }
-        let mut sum = [0.0; N];
-        let (first, last) = (base.min(at.x), base.max(at.x));
-        let sign = if at.x < base { -1.0 } else { 1.0 };
-        let mut low = first;
-        // Breaks repeat where the surface closes and a border runs over its seam.
-        let whole = (first.floor() as i64..=last.ceil() as i64).flat_map(|n| {
-            let n = n as f64;
-            self.breaks.0.iter().map(move |b| b + n).chain([n])
-        });
-        let mut stops: Vec<f64> = whole.filter(|u| *u > first && *u < last).collect();
-        stops.sort_by(f64::total_cmp);
-        stops.push(last);
-        for high in stops {
-            let own = self.part(low, high, at.y);
-            (0..N).for_each(|i| sum[i] += sign * own[i]);
-            low = high;
-        }
-        sum
+        self.strips.from(base, at, |low, high| self.part(low, high, at.y))
     }
 
     /// The runs of all borders between their stops.
@@ -161,12 +158,11 @@ where
         for (border, (_, way)) in self.ways.iter().enumerate() {
             let mut stops = way.stops(&self.breaks.1, self.closed_v);
             if let Some(plane) = self.below {
-                let place = |t: f64| way.at(self.evaluator, &|u, v| self.jet(u, v), t).0;
+                let place = |t: f64| way.at(self.evaluator, t).0;
                 plane.add_stops(&mut stops, |t| self.evaluator.point(place(t).x, place(t).y));
             }
             runs.extend(stops.windows(2).map(|w| Run { border, t: (w[0], w[1]), depth: 0 }));
         }
-        runs.reverse();
         runs
     }
 
@@ -178,7 +174,7 @@ where
             let half = 0.5 * (run.t.1 - run.t.0);
             let t = 0.5 * (run.t.0 + run.t.1) + half * x;
             let (base, way) = (self.ways[run.border].0, &self.ways[run.border].1);
-            let (at, dv) = way.at(self.evaluator, &|u, v| self.jet(u, v), t);
+            let (at, dv) = way.at(self.evaluator, t);
             (low, high) = (low.min(at), high.max(at));
             if dv == 0.0 {
                 continue;
@@ -208,48 +204,88 @@ where
 /// The integral of N functions of the jet over a trimmed surface, with estimated errors: `accuracy` is relative to the sums of
 /// their sizes.
 ///
-/// By Green's theorem from its borders, cut where the surface is less than analytic and halved until two rules agree; with a plane of
-/// what lies below it alone.
+/// By Green's theorem from its borders, cut where the surface is less than analytic and halved until two rules agree, as the rows
+/// from a border across are; with a plane of what lies below it alone.
 pub fn trimmed_integral<const N: usize>(
     surface: &Surface,
     accuracy: f64,
     integrand: Integrand<impl Fn(&Jet2) -> Sums<N>, impl Fn(&Jet2) -> Sums<N>>,
     below: Option<Below>,
+    meter: &Budget,
 ) -> (Sums<N>, Sums<N>) {
     let prepared = surface.prepared();
-    let green = Green::new(prepared.evaluator(), integrand, below);
+    let green = Green::new(prepared.evaluator(), accuracy, integrand, below);
     let rules = ALONG.map(|pair| pair.map(gauss_legendre));
-    let runs = green.runs();
-    let (mut scale, mut first) = ([0.0; N], Vec::with_capacity(runs.len()));
-    for met in runs.iter().map(|run| green.along(run, &rules[0][0], true)) {
-        (0..N).for_each(|i| scale[i] += met.size[i]);
-        first.push(met);
-    }
-    let share = accuracy / runs.len().max(1) as f64;
+    let open: Vec<(Run, Met<N>)> = green.runs().into_iter().map(|run| (run, green.along(&run, &rules[0][0], true))).collect();
+    let scale = open.iter().fold([0.0; N], |sum: Sums<N>, (_, met)| std::array::from_fn(|i| sum[i] + met.size[i]));
+    let limit = scale.map(|scale| accuracy * scale / open.len().max(1) as f64);
     let apart = |a: &Sums<N>, b: &Sums<N>| -> Sums<N> { std::array::from_fn(|i| (a[i] - b[i]).abs()) };
-    let settled = |apart: &Sums<N>| (0..N).all(|i| apart[i] <= share * scale[i]);
-    let mut open: Vec<(Run, Met<N>)> = runs.into_iter().zip(first).collect();
-    let (mut sum, mut error) = ([0.0; N], [0.0; N]);
-    while let Some((next, met)) = open.pop() {
+    let measure = |(run, met): &(Run, Met<N>)| {
         job::poll();
         let few = green.is_even(met.within).then(|| {
-            let value = green.along(&next, &rules[0][1], false).sum;
+            let value = green.along(run, &rules[0][1], false).sum;
             (value, apart(&value, &met.sum))
         });
-        let (value, off) = few.filter(|(_, off)| settled(off)).unwrap_or_else(|| {
-            let value = green.along(&next, &rules[1][1], false).sum;
-            (value, apart(&value, &green.along(&next, &rules[1][0], false).sum))
+        let (value, apart) = few.filter(|(_, off)| small(off, &limit)).unwrap_or_else(|| {
+            let value = green.along(run, &rules[1][1], false).sum;
+            (value, apart(&value, &green.along(run, &rules[1][0], false).sum))
         });
-        if next.depth == MAX_DEPTH || settled(&off) {
-            add(&mut sum, &value);
-            add(&mut error, &off);
-        } else {
-            let middle = 0.5 * (next.t.0 + next.t.1);
-            let halves = [(middle, next.t.1), (next.t.0, middle)].map(|t| Run { t, depth: next.depth + 1, ..next });
-            open.extend(halves.map(|half| (half, green.along(&half, &rules[0][0], false))));
-        }
-    }
+        Part { value, apart, limit, last: run.depth >= MAX_DEPTH }
+    };
+    let halves = |(run, _): (Run, Met<N>)| {
+        let middle = 0.5 * (run.t.0 + run.t.1);
+        [(run.t.0, middle), (middle, run.t.1)].map(|t| {
+            let half = Run { t, depth: run.depth + 1, ..run };
+            (half, green.along(&half, &rules[0][0], false))
+        })
+    };
+    let most = MOST_RUNS.max(4 * open.len());
+    let (sum, mut error) = Progress::new(accuracy, scale).sum(open, (most, 2), meter, measure, halves);
+    add(&mut error, &green.strips.error());
     (sum, error)
+}
+
+/// Point and first derivatives at the cost of so many units of work: nothing here takes second ones, which are left out.
+fn first_jet(evaluator: Evaluator, cost: u64, u: f64, v: f64) -> Jet2 {
+    work::spend(cost);
+    let [p, du, dv] = evaluator.tangents(u, v);
+    Jet2 { p, du, dv, ..Jet2::default() }
+}
+
+/// Where what lies between two values of a parameter is cut: at breaks, which repeat where the surface closes, as its seam does, at the
+/// ends of a box with some room, and at other values.
+fn cuts(breaks: &[f64], (low, high): (f64, f64), closed: bool, also: &[f64]) -> Vec<f64> {
+    let (low, high) = if low < high { (low, high) } else { (0.0, 1.0) };
+    let room = ROOM * (high - low);
+    let (low, high) = if closed { (low - room, high + room) } else { ((low - room).max(0.0), (high + room).min(1.0)) };
+    let turns = if closed { low.floor() as i64..=high.ceil() as i64 } else { 0..=0 };
+    let inner = turns.flat_map(|n| breaks.iter().copied().chain([0.0]).map(move |x| x + n as f64)).chain(also.iter().copied());
+    let mut stops: Vec<f64> = inner.filter(|x| *x > low && *x < high).chain([low, high]).collect();
+    stops.sort_by(f64::total_cmp);
+    stops.dedup();
+    stops
+}
+
+/// The borders of a trimmed surface and the steps from the end of each to the start of the next, which meet within a tolerance only, each
+/// with the base of its loop: an integral over a loop that is not closed depends on where its base is.
+fn ways(evaluator: Evaluator, bases: &[f64]) -> Vec<(f64, Way)> {
+    /// Ends farther apart in (u, v) are no ends at one place.
+    const APART: f64 = 0.1;
+    let surface = evaluator.surface();
+    let mut all = Vec::new();
+    let mut first = 0;
+    for n in surface.loops() {
+        let of_loop: Vec<Option<Way>> = (first..first + n).map(|k| Way::of(surface, k)).collect();
+        let end = |k: usize, t: f64| of_loop[k].as_ref().map(|way| way.at(evaluator, t).0);
+        let step = |k: usize| {
+            let (from, to) = (end(k, 1.0)?, end((k + 1) % n, 0.0)?);
+            (from != to && (to - from).abs().max_element() < APART).then(|| Way::Line(from.into(), to.into()))
+        };
+        let steps: Vec<Way> = (0..n).filter_map(step).collect();
+        all.extend(of_loop.into_iter().flatten().chain(steps).map(|way| (bases[first], way)));
+        first += n;
+    }
+    all
 }
 
 /// Places in (u, v) at which the borders of a trimmed surface cross a plane.
@@ -257,7 +293,7 @@ pub fn border_crossings(surface: &Surface, below: Below) -> Vec<DVec2> {
     let (evaluator, breaks, closed) = (surface.evaluator(), surface.breaks().1, surface.closed().1);
     let mut found = Vec::new();
     for way in (0..surface.n_sides()).filter_map(|k| Way::of(surface, k)) {
-        let place = |t: f64| way.at(evaluator, &|u, v| surface.jet(u, v), t).0;
+        let place = |t: f64| way.at(evaluator, t).0;
         let ends = way.stops(&breaks, closed);
         let mut stops = ends.clone();
         below.add_stops(&mut stops, |t| evaluator.point(place(t).x, place(t).y));
@@ -296,15 +332,19 @@ impl Way {
     }
 
     /// (u, v) at a share of the way, and dv by the share.
-    fn at(&self, evaluator: Evaluator, jet: &impl Fn(f64, f64) -> Jet2, t: f64) -> (DVec2, f64) {
+    fn at(&self, evaluator: Evaluator, t: f64) -> (DVec2, f64) {
         match self {
             Self::Line(a, b) => (DVec2::new(a.0 + (b.0 - a.0) * t, a.1 + (b.1 - a.1) * t), b.1 - a.1),
             Self::Chain(side, chain, from, to) => {
                 let f = from + (to - from) * t;
-                let uv = evaluator.border_place(*side, f).unwrap_or_default();
-                let jet = jet(uv.0, uv.1);
-                let d = chain.jet(f).d1 * (to - from);
-                let (e, g, m) = (jet.du.length_squared(), jet.dv.length_squared(), jet.du.dot(jet.dv));
+                let on = chain.jet(f);
+                let uv = evaluator.border_place_of(*side, f, on.p).unwrap_or_default();
+                let jet = evaluator.jet(uv.0, uv.1);
+                let d = on.d1 * (to - from);
+                // The foot of a point that is beside the surface moves as the surface bends there.
+                let off = jet.p - on.p;
+                let (e, g) = (jet.du.length_squared() + off.dot(jet.duu), jet.dv.length_squared() + off.dot(jet.dvv));
+                let m = jet.du.dot(jet.dv) + off.dot(jet.duv);
                 let dv = (e * jet.dv.dot(d) - m * jet.du.dot(d)) / (e * g - m * m);
                 (uv.into(), if dv.is_finite() { dv } else { 0.0 })
             }

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::{Describe, Edit, Report, Say, Subject, codes};
+use crate::base::math;
 use crate::base::origin::Origin;
 use crate::base::text::decimals;
 
@@ -156,6 +157,15 @@ pub enum ValueFault {
         /// The same as a share of the diagonal of the box asked for.
         share: f64,
     },
+    /// W228: a measure is known to few digits.
+    RoughMeasure {
+        /// What is measured.
+        of: Origin,
+        /// Which measure: "the area".
+        what: &'static str,
+        /// By how much of its value it may be off.
+        share: f64,
+    },
     /// E217: a list or work limit.
     Limit {
         /// What would be made, for example "a mesh of 4 000 000 000 elements".
@@ -222,7 +232,7 @@ impl Describe for ValueFault {
         OutsideRange "E306", LengthOutside "E306", NotItsPlane "E306", NotAcross "E306", Missing "E301", Exclusive "E305",
         NoLinks "E211", NoFaces "E211", WrongKind "E211", Mixed "E211", NotOneEdge "E215", NothingSelected "W728",
         NotMeshed "W224", OfNothing "W729", Raised "E903", NotInThisVersion "E230", Work "E217", StageWork "E217", RowWork "E217",
-        Limit "E217", LooseBox "W227"
+        Limit "E217", LooseBox "W227", RoughMeasure "W228"
     }
 
     fn describe(&self, say: &dyn Say) -> Report {
@@ -294,6 +304,11 @@ impl Describe for ValueFault {
                 Report::new(message)
                     .at(*of, "has more equally extreme places than are examined")
                     .help("it contains the surface; boxes of parts of it (`split`) are tighter")
+            }
+            Self::RoughMeasure { of, what, share } => {
+                Report::new(format!("{what} of {} may be off by {share:.0e} of its value", say.quoted(*of, "this")))
+                    .at(*of, format!("about {} digits hold", (-math::log10(*share)).floor().max(0.0)))
+                    .help("a measure takes a limited amount of work: measure parts of it (`split`), or make it of fewer or smoother curves")
             }
             Self::Limit { what, limit } => {
                 Report::new(format!("{what} exceeds its limit")).label(Subject::Call, "made here").help(format!("the limit is {limit}"))

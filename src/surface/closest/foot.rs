@@ -163,9 +163,13 @@ impl Surface {
 impl Evaluator<'_> {
     /// See [`Surface::border_place`].
     pub fn border_place(self, k: usize, fraction: f64) -> Option<(f64, f64)> {
+        let Side::Chain { chain, .. } = self.surface().side(k) else { return None };
+        self.border_place_of(k, fraction, chain.point(fraction))
+    }
+
+    /// The same of a point of the border that is known.
+    pub fn border_place_of(self, k: usize, fraction: f64, p: DVec3) -> Option<(f64, f64)> {
         let surface = self.surface();
-        let Side::Chain { chain, .. } = surface.side(k) else { return None };
-        let p = chain.point(fraction);
         let trim_curve = surface.parts().trim.as_ref().and_then(|trim| trim.trim_curves.get(k));
         match trim_curve {
             _ if surface.is_flat() => surface.flat_uv(p),

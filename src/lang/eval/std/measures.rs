@@ -6,6 +6,8 @@ use glam::DVec3;
 
 use crate::base::bbox::Box3;
 use crate::base::fault::ValueFault;
+use crate::base::origin::Origin;
+use crate::base::tolerance::MEASURE_TOLD;
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
 use crate::lang::eval::std::kinds::PatchOf;
@@ -37,6 +39,24 @@ pub(crate) fn box_of(cx: &mut Cx, surfaces: &[Surface]) -> Value {
     record_of(cx, bounds)
 }
 
+/// A measure of surfaces or what they enclose, estimated to be off by no more than a share of it; W228 where few digits hold.
+pub(crate) fn told(cx: &mut Cx, what: &'static str, of: Origin, (value, share): (f64, f64)) -> f64 {
+    if share > MEASURE_TOLD {
+        cx.say(&ValueFault::RoughMeasure { of, what, share }.into());
+    }
+    value
+}
+
+/// The area of surfaces as [`told`] has it.
+pub(crate) fn area_of(cx: &mut Cx, surfaces: &[Surface]) -> Area {
+    let all = measure::areas_within(surfaces);
+    let (sum, error) = all.iter().fold((0.0, 0.0), |sum, own| (sum.0 + own.0, sum.1 + own.1));
+    // The one that is off by most is named.
+    let worst = (0..all.len()).max_by(|a, b| all[*a].1.total_cmp(&all[*b].1).then(b.cmp(a)));
+    let of = worst.map_or(Origin::NONE, |k| surfaces[k].origin());
+    Area(told(cx, "the area", of, (sum, if sum > 0.0 { error / sum } else { 0.0 })))
+}
+
 builtins! {
     /// The box along the axes between two corners: `{min, max, size, diagonal}`.
     ///
@@ -54,7 +74,7 @@ builtins! {
 
 fields! {
     /// Area of a surface.
-    fn area(of: Surface) -> Area = |_, of| Ok(Area(measure::area(&of)));
+    fn area(of: Surface) -> Area = |cx, of| Ok(area_of(cx, &[of]));
     /// Area of a patch.
     fn area(of: PatchOf) -> Area = |cx, of| {
         let model = cx.model(&of.0)?;
@@ -62,11 +82,14 @@ fields! {
         Ok(Area(measure::area_between(&model.surfaces[patch.surface.index()].surface, (patch.u, patch.v))))
     };
     /// Area of all surfaces of a shell.
-    fn area(of: Arc<ShellValue>) -> Area = |_, of| Ok(Area(measure::areas(&of.surfaces).iter().sum()));
+    fn area(of: Arc<ShellValue>) -> Area = |cx, of| Ok(area_of(cx, &of.surfaces));
     /// Area of all faces of a mesh.
     fn area(of: Arc<MeshValue>) -> Area = |cx, of| Ok(Area(cx.mesh(&of)?.quality().map_or(0.0, |q| q.area)));
     /// Volume that a closed shell encloses.
-    fn volume(of: Arc<ShellValue>) -> Volume = |cx, of| Ok(Volume(cx.solid(&of)?.volume.abs()));
+    fn volume(of: Arc<ShellValue>) -> Volume = |cx, of| {
+        let solid = cx.solid(&of)?;
+        Ok(Volume(told(cx, "the volume", of.origin, (solid.volume.abs(), solid.error))))
+    };
     /// Centre of the length of a curve.
     fn centroid(of: Chain) -> Point = |_, of| Ok(Point(measure::curve_centroid(&of)));
     /// Centre of the area of a mesh; of lines alone of their length.

@@ -7,7 +7,7 @@ use glam::DVec3;
 use crate::base::fault::ValueFault;
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
-use crate::lang::eval::std::measures::box_of;
+use crate::lang::eval::std::measures::{area_of, box_of};
 use crate::lang::values::conversions::{Area, Length, Point, Volume};
 use crate::lang::values::part::PartValue;
 use crate::lang::values::value::Value;
@@ -205,7 +205,7 @@ fields! {
     /// A face that could not be used is not among them. The list may be narrowed: `part.faces.cylinders(radius: 5mm)`.
     fn faces(of: Arc<PartValue>) -> Vec<Surface> = |_, of| Ok(of.faces.clone());
     /// Area of all faces of a part.
-    fn area(of: Arc<PartValue>) -> Area = |_, of| Ok(Area(measure::sheet(&of.faces).area));
+    fn area(of: Arc<PartValue>) -> Area = |cx, of| Ok(area_of(cx, &of.faces));
     /// Volume of all solids of a part. Where the file has none it is that of the closed shells that its faces form.
     fn volume(of: Arc<PartValue>) -> Volume = |cx, of| Ok(Volume(volumes(cx, &of)?.0));
     /// Centre of the volume of the solids of a part. Where they enclose none it is that of the area of its faces.
@@ -223,7 +223,7 @@ fields! {
     /// Where thousands of places are equally extreme it may be larger: W227 says by how much at most. It contains every point.
     fn bbox(of: Vec<Surface>) -> Value = |cx, of| boxed(cx, &of);
     /// Area of surfaces together.
-    fn area(of: Vec<Surface>) -> Area = |_, of| Ok(Area(measure::sheet(&of).area));
+    fn area(of: Vec<Surface>) -> Area = |cx, of| Ok(area_of(cx, &of));
 }
 
 fn boxed(cx: &mut Cx, faces: &[Surface]) -> Result<Value, Halt> {

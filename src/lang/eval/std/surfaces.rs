@@ -61,13 +61,14 @@ pub(crate) fn note_crossing(cx: &mut Cx, said: &[Fault], faces: &[Surface], tole
     }
 }
 
-/// Where a part of a surface stands among others: its centre in whole tolerances, which rounding does not change, and its area.
-fn by_centre(part: Surface, tolerance: &Tolerance) -> ([i64; 3], f64, Surface) {
+/// Where a part of a surface stands among others: its centre in whole tolerances, which rounding does not change, and its area with the
+/// error of that.
+fn by_centre(part: Surface, tolerance: &Tolerance) -> ([i64; 3], (f64, f64), Surface) {
     // An offset, so that rounding does not decide for centres at round numbers.
     const OFF: f64 = 0.37;
     let sheet = measure::sheet(std::slice::from_ref(&part));
     let whole = |x: f64| (x / tolerance.point + OFF).floor() as i64;
-    (sheet.centroid.to_array().map(whole), sheet.area, part)
+    (sheet.centroid.to_array().map(whole), (sheet.area, sheet.error * sheet.area), part)
 }
 
 pub(crate) fn rows(net: Vec<Vec<Point>>) -> Vec<Vec<DVec3>> {
@@ -216,7 +217,7 @@ builtins! {
         let cutters = crate::lang::eval::meetings::cutters(cx, &whole, by)?;
         let surface = crate::surface::divide(&whole, &cutters, keep.0, cx.origin(), &tolerance)?;
         let parts = crate::surface::split(&whole, &cutters, cx.origin(), &tolerance)?;
-        measure::adds_up(&whole, &cutters, &measure::areas(&parts), &tolerance)?;
+        measure::adds_up(&whole, &cutters, &measure::areas_within(&parts), &tolerance)?;
         reported(cx, surface.cut_from(&[s]), &[])
     };
 
@@ -242,9 +243,9 @@ builtins! {
         let tolerance = cx.tolerance()?;
         let cutters = crate::lang::eval::meetings::cutters(cx, &s, by)?;
         let parts = crate::surface::split(&s, &cutters, cx.origin(), &tolerance)?;
-        let mut keyed: Vec<([i64; 3], f64, Surface)> = parts.into_iter().map(|part| by_centre(part, &tolerance)).collect();
+        let mut keyed: Vec<([i64; 3], (f64, f64), Surface)> = parts.into_iter().map(|part| by_centre(part, &tolerance)).collect();
         measure::adds_up(&s, &cutters, &keyed.iter().map(|part| part.1).collect::<Vec<_>>(), &tolerance)?;
-        keyed.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        keyed.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.0.total_cmp(&b.1.0)));
         keyed.into_iter().map(|(_, _, part)| reported(cx, part, &[])).collect()
     };
 
