@@ -16,6 +16,7 @@ use crate::base::fault::Result;
 use crate::base::origin::Origin;
 use crate::base::par;
 use crate::base::tolerance::{EPSILON, FLOAT_ALONG, FLOAT_CLOSED, FLOAT_TRIMMED};
+use crate::base::work;
 use crate::model::measure::{self, Below};
 use crate::surface::{Jet2, Surface};
 
@@ -57,7 +58,8 @@ impl Body {
     pub fn of_faces(origin: Origin, surfaces: &[(Surface, bool)], free: Vec<FreeEdge>, tolerance: f64) -> Result<Self> {
         let bounds = surfaces.iter().fold(Box3::EMPTY, |all, (surface, _)| all.union(measure::bounds(std::slice::from_ref(surface))));
         let (about, reach) = (bounds.center(), 0.5 * bounds.diagonal());
-        let faces = par::map(surfaces.len(), |k| Face::new(&surfaces[k].0, surfaces[k].1, about, reach));
+        // A measure fails no model: what its cells take is bounded, and charged to nobody.
+        let faces = work::uncharged(|| par::map(surfaces.len(), |k| Face::new(&surfaces[k].0, surfaces[k].1, about, reach)));
         Self { origin, faces, triangles: Triangles::default(), bounds, mirrored: false, free, tolerance, about, area: 0.0, inwards: false }
             .turned_outwards()
     }
@@ -132,7 +134,7 @@ impl Body {
 
     /// The same, whether or not it is open there: a search looks at positions that are not the one found.
     pub fn wet_anyhow(&self, water: &Water) -> Wet {
-        let sums = self.sums(water);
+        let sums = work::uncharged(|| self.sums(water));
         if self.inwards { sums.turned() } else { sums }
     }
 

@@ -7,13 +7,15 @@ use crate::base::bbox::Box3;
 use crate::base::job;
 use crate::base::quadrature::gauss_legendre;
 use crate::base::range::{Interval, Interval3};
-use crate::base::tolerance::{EPSILON, FLOAT_CELL, FLOAT_ROUGH_CELL, MEASURE_ACCURACY, SLIVER};
+use crate::base::tolerance::{EPSILON, FLOAT_CELL, FLOAT_NET, FLOAT_ROUGH_CELL, MEASURE_ACCURACY, SLIVER, Tolerance};
 use crate::base::work;
 use crate::model::measure;
-use crate::surface::{Domain, PreparedSurface, Surface, SurfaceKind};
+use crate::surface::{Domain, NetForm, Off, PreparedSurface, Surface, SurfaceKind};
 
 /// Orders of the rules tried one after the other on a cell.
 const ORDERS: [usize; 3] = [5, 8, 12];
+/// Cells between breaks from which on a net stands for the surface.
+const MANY: usize = 64;
 /// A cell is halved at most so often in each direction.
 const MAX_DEPTH: u32 = 8;
 /// Cells that quartering may add, beside one for each there is.
@@ -107,7 +109,9 @@ impl Face {
         };
         let mut face = Self { prepared: surface.prepared(), sign, way, cells: Vec::new() };
         if face.way == Way::Cells {
+            let off = face.simplified(surface, reach);
             face.make_cells(about, reach);
+            face.cells.iter_mut().for_each(|cell| cell.error += cell.sums[0] * off / reach);
         } else {
             let density = |jet: &crate::surface::Jet2, arm: DVec3| whole_densities(arm, jet.du.cross(jet.dv) * sign);
             let (sums, errors) = measure::over(surface, about, MEASURE_ACCURACY, &density);
@@ -115,6 +119,24 @@ impl Face {
             face.cells = vec![Cell { rect, bounds: surface.hull(), sums, error: as_area(&errors, reach) }];
         }
         face
+    }
+
+    /// Takes a net in place of a surface blended from many curves, each place of which takes an evaluation of all of them; says how far
+    /// off that is at most, model units.
+    fn simplified(&mut self, surface: &Surface, reach: f64) -> f64 {
+        let (us, vs) = surface.breaks();
+        let plain = self.prepared.evaluator().has_power_form() || surface.domain() != Domain::Square;
+        if plain || (us.len() + 1) * (vs.len() + 1) < MANY {
+            return 0.0;
+        }
+        let tolerance = Tolerance::new(FLOAT_NET * reach, reach);
+        match surface.to_net(&tolerance) {
+            Ok(Some(NetForm { net, off: Off::Bounded(off) })) => {
+                self.prepared = net.surface(surface.kind(), surface.origin(), &tolerance).prepared();
+                off
+            }
+            _ => 0.0,
+        }
     }
 
     /// Point and first derivatives at a place of the unit square.

@@ -87,16 +87,42 @@ pub(super) fn body(cx: &mut Cx, what: &Floating) -> Result<Arc<Body>, Halt> {
         }
         Floating::Faces(values) => values,
     };
-    let shell = match values.as_slice() {
+    let whole = match values.as_slice() {
         [Value::Shell(shell)] => shell.clone(),
         _ => Arc::new(taken_together(cx, values)),
     };
     let module = cx.module();
-    let glued = cx.glued(module, &shell)?;
+    let glued = match cx.glued(module, &whole) {
+        Err(Halt::Fault(fault)) if fault.code().0 == APART && values.len() > 1 => return bodies_apart(cx, values),
+        glued => glued?,
+    };
     glued.body(|| {
-        let free = free_edges(cx, &shell)?;
-        Ok(Body::of_faces(shell.origin, &glued.faces(), free, tolerance.max(glued.shell.near))?)
+        let free = free_edges(cx, &whole)?;
+        Ok(Body::of_faces(whole.origin, &glued.faces(), free, tolerance.max(glued.shell.near))?)
     })
+}
+
+/// Faces that share no edge with the others, as those of two hulls.
+const APART: &str = "E618";
+
+/// One body of several, each a shell or what the surfaces among the values are together.
+fn bodies_apart(cx: &mut Cx, values: &[Value]) -> Result<Arc<Body>, Halt> {
+    let (tolerance, module) = (cx.tolerance()?.point, cx.module());
+    let is_shell = |value: &&Value| matches!(value, Value::Shell(_));
+    let loose: Vec<Value> = values.iter().filter(|value| !is_shell(value)).cloned().collect();
+    let shells = values.iter().filter_map(|value| if let Value::Shell(shell) = value { Some(shell.clone()) } else { None });
+    let mut parts: Vec<Arc<ShellValue>> = shells.collect();
+    parts.extend((!loose.is_empty()).then(|| Arc::new(taken_together(cx, &loose))));
+    let (mut faces, mut free, mut near) = (Vec::new(), Vec::new(), tolerance);
+    for shell in &parts {
+        let glued = cx.glued(module, shell)?;
+        let edges = free_edges(cx, shell)?;
+        let own = Body::of_faces(shell.origin, &glued.faces(), edges.clone(), tolerance.max(glued.shell.near))?;
+        faces.extend(glued.faces().into_iter().map(|(surface, other)| (surface, other != own.turned_inwards())));
+        free.extend(edges);
+        near = near.max(glued.shell.near);
+    }
+    Ok(Arc::new(Body::of_faces(cx.origin(), &faces, free, near)?))
 }
 
 /// The nodes of a mesh and the corners of its elements as triangles.
