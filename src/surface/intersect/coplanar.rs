@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use crate::base::fault::Result;
 use crate::base::range::Interval3;
-use crate::base::tolerance::Tolerance;
+use crate::base::tolerance::{PARALLEL, Tolerance};
 use crate::network::{Chain, meet as meet_chains};
 use crate::surface::closest::nearest::Nearest;
 use crate::surface::core::surface::Surface;
@@ -70,6 +70,11 @@ fn borders(face: &Surface) -> Option<Vec<Chain>> {
 pub(crate) fn is_flat(face: &Surface) -> bool {
     if face.is_flat() {
         return true;
+    }
+    let ends = [(0.0, 0.0), (1.0, 1.0)].map(|(u, v)| face.jet(u, v));
+    let alike = |a: DVec3, b: DVec3| a.distance(b) <= PARALLEL * (a.length() + b.length());
+    if !alike(ends[0].du, ends[1].du) || !alike(ends[0].dv, ends[1].dv) {
+        return false;
     }
     let enclosure = face.untrimmed().enclosure((0.0, 1.0), (0.0, 1.0));
     let even = |r: &Interval3| !r.is_unbounded() && r.low == r.high;

@@ -4,6 +4,7 @@
 pub mod coplanar;
 mod curve_overlap;
 pub mod curve_patch;
+mod extrusions;
 pub mod fit_branch;
 pub mod join_curves;
 pub mod known_curves;

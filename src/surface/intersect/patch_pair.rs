@@ -3,6 +3,7 @@
 //! A pair is dropped when the two cells are further apart than the tolerance. Where no two tangent planes of a pair are
 //! parallel the common places lie one behind the other, so a place on a line that is known settles the pair; a place on
 //! none begins a march. Pairs without such a place are halved: no line is missed that is longer than a few tolerances.
+//! A line may leave a pair over a border of a patch, as over a seam, and come back: pairs at such a border are halved on.
 //! What stays parallel down to flat cells touches.
 
 use glam::DVec3;
@@ -33,6 +34,8 @@ struct PairLimits {
     least_cell_tolerances: f64,
     /// Share of the smaller patch below which, however large the tolerance is.
     least_cell_share: f64,
+    /// Share of the smaller patch down to which cells at a border are halved although a line through them is known.
+    border_share: f64,
 }
 
 const SEARCH: PairLimits = PairLimits {
@@ -44,6 +47,7 @@ const SEARCH: PairLimits = PairLimits {
     max_touches: 2_000,
     least_cell_tolerances: 16.0,
     least_cell_share: 1.0 / 64.0,
+    border_share: 1.0 / 256.0,
 };
 
 /// What two patches have in common.
@@ -86,15 +90,17 @@ pub(crate) fn common(a: &mut Sheet, b: &mut Sheet, known: &[KnownCurve], point: 
     for i in roots_a {
         for j in &roots_b {
             job::poll();
-            search.pair(i, *j)?;
+            search.pair(i, *j, false)?;
         }
     }
     Ok(search.common)
 }
 
 impl PairSearch<'_> {
-    fn pair(&mut self, i: usize, j: usize) -> Result<(), Stopped> {
+    /// Looks at a pair of cells; `known` says that a line through a larger pair around it is known.
+    fn pair(&mut self, i: usize, j: usize, known: bool) -> Result<(), Stopped> {
         self.looked_at += 1;
+        let mut known = known;
         let (x, y) = (self.a.cell(i), self.b.cell(j));
         if self.a.is_outside(i) || self.b.is_outside(j) || apart(x, y, self.point) {
             return Ok(());
@@ -106,8 +112,20 @@ impl PairSearch<'_> {
         // Flat cells that part by no more than a few tolerances run along each other.
         let slow = fine && x.normal.cross(y.normal).length() * x.reach().min(y.reach()) <= SEARCH.divergence_tolerances * self.point;
         if !slow && crosses(x, y) {
-            if apart(x, y, SEARCH.exact_share * self.point) || self.known.iter().any(|known| known.passes(x, y)) || self.settled(i, j)? {
+            if apart(x, y, SEARCH.exact_share * self.point) || self.known.iter().any(|known| known.passes(x, y)) {
                 return Ok(());
+            }
+            // What is lost beside a known line ends at a border.
+            let small = x.reach().max(y.reach()) <= SEARCH.border_share * self.size;
+            let at_border = self.a.is_at_border(i) || self.b.is_at_border(j);
+            if known && (small || !at_border) {
+                return Ok(());
+            }
+            if self.settled(i, j, known)? {
+                if small || !at_border {
+                    return Ok(());
+                }
+                known = true;
             }
         } else if fine {
             return self.touch(i, j);
@@ -120,27 +138,31 @@ impl PairSearch<'_> {
         let halves = if first { self.a.halves(i) } else { self.b.halves(j) };
         match (halves, first) {
             (Some((k, l)), true) => {
-                self.pair(k, j)?;
-                self.pair(l, j)
+                self.pair(k, j, known)?;
+                self.pair(l, j, known)
             }
             (Some((k, l)), false) => {
-                self.pair(i, k)?;
-                self.pair(i, l)
+                self.pair(i, k, known)?;
+                self.pair(i, l, known)
             }
             (None, _) => Ok(()),
         }
     }
 
-    /// Whether a common place of two cells is known; a new one is marched from.
-    fn settled(&mut self, i: usize, j: usize) -> Result<bool, Stopped> {
+    /// Whether a common place of two cells is known; a new one is marched from. Where a line through a larger pair is known a march that
+    /// comes to a halt began at an end of it.
+    fn settled(&mut self, i: usize, j: usize, known: bool) -> Result<bool, Stopped> {
         self.looked_at += SEARCH.pairs_per_solution;
         let (x, y) = (self.a.cell(i), self.b.cell(j));
         let pair = Pair { a: &self.a.patch, b: &self.b.patch, point: self.point };
         let Some(spot) = pair.correct(x.middle(), y.middle(), None) else { return Ok(false) };
         let Some(spot) = inside(&pair, x, y, spot) else { return Ok(false) };
         if !self.common.branches.iter().any(|branch| pair.passes(branch, &spot)) {
-            let branch = pair.march(spot, self.size).map_err(Stopped::Lost)?;
-            self.common.branches.push(branch);
+            match pair.march(spot, self.size) {
+                Ok(branch) => self.common.branches.push(branch),
+                Err(_) if known => {}
+                Err(at) => return Err(Stopped::Lost(at)),
+            }
         }
         Ok(true)
     }

@@ -22,15 +22,17 @@ const ALONG: f64 = 16.0;
 const BEYOND: f64 = 1.0 / 64.0;
 
 /// A flat ground: `p + u du + v dv`.
-struct Flat {
-    p: DVec3,
+pub(crate) struct Flat {
+    pub p: DVec3,
     du: DVec3,
     dv: DVec3,
-    normal: DVec3,
+    /// A unit vector.
+    pub normal: DVec3,
 }
 
 impl Flat {
-    fn of(face: &Surface, reach: Box3) -> Option<Self> {
+    /// Of a flat face, an unbounded one as far as a box reaches; `None` for others.
+    pub fn of(face: &Surface, reach: Box3) -> Option<Self> {
         if !is_flat(face) {
             return None;
         }
@@ -40,7 +42,7 @@ impl Flat {
     }
 
     /// Lines that bound the parallelogram 0 ≤ u, v ≤ 1: an inner unit normal in the plane of each, and a point of it.
-    fn sides(&self) -> [(DVec3, DVec3); 4] {
+    pub fn sides(&self) -> [(DVec3, DVec3); 4] {
         let inward = |along: DVec3, to: DVec3| to.reject_from(along).normalize_or_zero();
         let (across_v, across_u) = (inward(self.du, self.dv), inward(self.dv, self.du));
         let far = self.p + self.du + self.dv;
@@ -68,7 +70,8 @@ pub(crate) fn flat_faces(faces: [&Surface; 2], boxes: [Box3; 2], origin: Origin,
     let cosine = a.normal.dot(b.normal);
     let (x, y) = ((heights.0 - heights.1 * cosine) / (sine * sine), (heights.1 - heights.0 * cosine) / (sine * sine));
     let at = middle - a.normal * x - b.normal * y;
-    let Some(range) = clipped_to_box(at, way, &shared.grown(BEYOND * shared.diagonal() + tolerance.point)) else {
+    // Of faces that only touch the boxes may miss each other by rounding.
+    let Some(range) = clipped_to_box(at, way, &shared.grown(BEYOND * size + tolerance.point)) else {
         return Ok(Some(Lines::default()));
     };
     let mut range = range;
@@ -143,7 +146,7 @@ fn border_points(line: &Curve, faces: [&Surface; 2], tolerance: &Tolerance) -> R
 }
 
 /// Those of some points that lie on both faces.
-fn on_both(mut points: Vec<DVec3>, faces: [&Surface; 2], tolerance: &Tolerance) -> Vec<DVec3> {
+pub(crate) fn on_both(mut points: Vec<DVec3>, faces: [&Surface; 2], tolerance: &Tolerance) -> Vec<DVec3> {
     let on = |face: &Surface, p: DVec3| {
         let foot = closest(&face.untrimmed(), p);
         foot.distance <= tolerance.point && face.keeps_point(p, DVec2::from(foot.uv), tolerance.point)

@@ -259,6 +259,14 @@ impl Sheet {
         Some((at, at + 1))
     }
 
+    /// Whether a side of a cell is part of a border of the patch.
+    pub fn is_at_border(&self, k: usize) -> bool {
+        let (cell, patch) = (&self.cells[k], &self.patch);
+        let slant = patch.is_triangle() && cell.u.1 + cell.v.1 >= 1.0;
+        let at = |own: (f64, f64), all: (f64, f64)| own.0 <= all.0 || own.1 >= all.1;
+        slant || at(cell.u, patch.u) || at(cell.v, patch.v)
+    }
+
     /// Whether a cell lies outside a triangle.
     pub fn is_outside(&self, k: usize) -> bool {
         self.patch.is_triangle() && self.cells[k].u.0 + self.cells[k].v.0 >= 1.0

@@ -5,15 +5,18 @@ use glam::{DVec2, DVec3};
 
 use crate::base::fault::Result;
 use crate::base::origin::Origin;
-use crate::base::tolerance::{ROUNDING_SHARE, Tolerance};
+use crate::base::tolerance::{EPSILON, ROUNDING_SHARE, Tolerance};
 use crate::geometry::Curve;
+use crate::geometry::construct::build::line;
 use crate::geometry::data::fault::CurveFault;
 use crate::network::fault::MeetingFault;
 use crate::network::snap::may_snap;
 use crate::network::{Chain, meet as meet_chains};
+use crate::surface::closest::foot::step;
 use crate::surface::closest::nearest::{Nearest, closest};
 use crate::surface::core::surface::Surface;
 use crate::surface::data::kind::Domain;
+use crate::surface::intersect::coplanar::is_flat;
 use crate::surface::intersect::curve_patch::{Contact, CurveTouch, contacts};
 use crate::surface::intersect::sheet::{Patch, Sheet, grounded, patches};
 use crate::surface::rails::side::Side;
@@ -75,7 +78,7 @@ fn with_one(chain: &Chain, surface: &Surface, tolerance: &Tolerance) -> Result<V
     let (mapped, surface) = (surface, &over_frame(surface, tolerance)?);
     let length = curve.length();
     let (overlaps, mut points) = match in_plane(chain, &curve, surface, tolerance)? {
-        Some(on_loops) => (vec![(0.0, 1.0)], on_loops),
+        Some(found) => found,
         None => searched(&curve, surface, tolerance)?,
     };
     let near = tolerance.point / length;
@@ -103,10 +106,11 @@ fn with_one(chain: &Chain, surface: &Surface, tolerance: &Tolerance) -> Result<V
     Ok(out)
 }
 
-/// Where a curve that lies in the plane of a face meets the loops of the face, by fractions of the curve; `None` for other curves and
-/// faces. The loops alone tell which parts of the curve lie on the face, however small these are beside the curve.
-fn in_plane(chain: &Chain, curve: &Curve, surface: &Surface, tolerance: &Tolerance) -> Result<Option<Vec<CurveTouch>>> {
-    if !surface.is_flat() || !matches!(surface.domain(), Domain::Loop | Domain::Unbounded) {
+/// Parts of a curve in the plane of a flat face that lie on its ground, and where the curve meets the loops of the face, both by fractions
+/// of the curve; `None` for other curves and faces. The borders alone tell which parts lie on the face, however small these are beside the
+/// curve.
+fn in_plane(chain: &Chain, curve: &Curve, surface: &Surface, tolerance: &Tolerance) -> Result<Option<(Vec<Stretch>, Vec<CurveTouch>)>> {
+    if !is_flat(surface) {
         return Ok(None);
     }
     let Some(curve) = rational(curve) else { return Ok(None) };
@@ -116,15 +120,43 @@ fn in_plane(chain: &Chain, curve: &Curve, surface: &Surface, tolerance: &Toleran
     if normal == DVec3::ZERO || !(0..curve.poles.len()).all(|k| height(k) <= LYING * tolerance.point) {
         return Ok(None);
     }
-    let mut touches = Vec::new();
-    for k in 0..surface.n_sides() {
-        let Side::Chain { chain: border, .. } = surface.side(k) else { continue };
-        for m in meet_chains(chain, &border, tolerance)? {
-            let (p, uv) = (chain.point(m.fa), surface.flat_uv(m.point).unwrap_or_default());
-            touches.push(CurveTouch { t: m.fa, uv: uv.into(), p, gap: p.distance(border.point(m.fb)), sine: 1.0 });
+    let uv = |p: DVec3| step(jet.du, jet.dv, p - jet.p).unwrap_or_default();
+    let mut borders = Vec::new();
+    match surface.domain() {
+        Domain::Unbounded => {}
+        Domain::Loop => {
+            for k in 0..surface.n_sides() {
+                if let Side::Chain { chain: border, .. } = surface.side(k) {
+                    borders.push(border);
+                }
+            }
+        }
+        Domain::Square => {
+            let corners = [jet.p, jet.p + jet.du, jet.p + jet.du + jet.dv, jet.p + jet.dv];
+            for k in 0..4 {
+                borders.push(Chain::of_curve(&line(corners[k], corners[(k + 1) % 4], Origin::NONE)?));
+            }
+        }
+        Domain::Triangle => return Ok(None),
+    }
+    let (mut touches, mut cuts) = (Vec::new(), vec![0.0, 1.0]);
+    for border in &borders {
+        for m in meet_chains(chain, border, tolerance)? {
+            let p = chain.point(m.fa);
+            touches.push(CurveTouch { t: m.fa, uv: uv(m.point), p, gap: p.distance(border.point(m.fb)), sine: 1.0 });
+            cuts.push(m.fa);
+            cuts.extend(m.overlap_end.map(|(f, _)| f));
         }
     }
-    Ok(Some(touches))
+    if surface.domain() != Domain::Square {
+        return Ok(Some((vec![(0.0, 1.0)], touches)));
+    }
+    cuts.sort_by(f64::total_cmp);
+    // Where the curve runs along a side its middle is beside it by rounding.
+    let room = DVec2::new(tolerance.point / jet.du.length(), tolerance.point / jet.dv.length());
+    let inside = |p: DVec2| p.cmpge(-room).all() && p.cmple(1.0 + room).all();
+    let parts = cuts.windows(2).filter(|w| w[0] < w[1] && inside(uv(chain.point(0.5 * (w[0] + w[1])))));
+    Ok(Some((parts.map(|w| (w[0], w[1])).collect(), touches)))
 }
 
 /// A part of a curve, from one fraction of its length to another.
@@ -211,7 +243,13 @@ pub(crate) fn kept_intervals(
     let mut out: Vec<(f64, f64)> = Vec::new();
     let near = tolerance.point / chain.length();
     let below = Nearest::new(&surface.untrimmed());
-    for (from, to) in intervals {
+    // What ends beside a border within the tolerance ends on it.
+    let settled = |f: f64| {
+        let beside = cuts.iter().copied().filter(|cut| (cut - f).abs() <= near);
+        let nearest = beside.min_by(|a, b| (a - f).abs().total_cmp(&(b - f).abs()));
+        nearest.filter(|cut| (cut - f).abs() > EPSILON.sqrt() * near).unwrap_or(f)
+    };
+    for (from, to) in intervals.into_iter().map(|(from, to)| (settled(from), settled(to))) {
         let inner = cuts.iter().copied().filter(|f| *f > from + near && *f < to - near);
         let stops: Vec<f64> = std::iter::once(from).chain(inner).chain(std::iter::once(to)).collect();
         for w in stops.windows(2) {

@@ -18,6 +18,7 @@ use crate::surface::core::surface::Surface;
 use crate::surface::data::kind::Domain;
 use crate::surface::faults::CrossingFault;
 use crate::surface::intersect::coplanar::{Coplanar, overlap};
+use crate::surface::intersect::extrusions::flat_and_extruded;
 use crate::surface::intersect::join_curves::{self, STRAIGHT};
 use crate::surface::intersect::known_curves::KnownCurve;
 use crate::surface::intersect::pair::Pair;
@@ -92,7 +93,11 @@ fn of_two(a: &Surface, b: &Surface, origin: Origin, tolerance: &Tolerance) -> Re
     if !box_a.touches(&box_b, tolerance.point) {
         return Ok((Vec::new(), Vec::new()));
     }
-    if let Some(lines) = flat_faces([a, b], [box_a, box_b], origin, tolerance)? {
+    let closed_form = match flat_faces([a, b], [box_a, box_b], origin, tolerance)? {
+        None => flat_and_extruded([a, b], [box_a, box_b], origin, tolerance)?,
+        found => found,
+    };
+    if let Some(lines) = closed_form {
         let mut kept = Vec::new();
         for line in lines.curves {
             kept.extend(kept_parts(line, [a, b], tolerance)?);
@@ -135,6 +140,8 @@ fn searched([a, b]: [&Surface; 2], [box_a, box_b]: [Box3; 2], origin: Origin, to
                 let cubics = pair.fitted(branch, &lost)?;
                 own.extend(curve(&cubics, origin, tolerance)?);
             }
+            // Beside a known curve a march finds that one again, within the tolerance only.
+            own.retain(|curve| !known_curves.iter().any(|known| lies_on(curve, &known.chain, tolerance)));
             for extent in clusters(&found.touches, tolerance.point) {
                 let at = extent.center();
                 let known =
@@ -222,18 +229,21 @@ fn kept_parts(curve: Curve, surfaces: [&Surface; 2], tolerance: &Tolerance) -> R
 
 /// Curves without those that lie on another one: patches side by side both have what lies on their border.
 fn once(mut curves: Vec<Curve>, tolerance: &Tolerance) -> Vec<Curve> {
-    const PLACES: usize = 5;
     curves.sort_by(|a, b| b.length().total_cmp(&a.length()));
     let mut kept: Vec<(Curve, Chain)> = Vec::new();
     for curve in curves {
-        let chain = Chain::of_curve(&curve);
-        let lies = |other: &Chain| {
-            let near = |k: usize| other.closest(chain.point(k as f64 / (PLACES - 1) as f64)).2 <= 2.0 * tolerance.point;
-            curve.bbox().touches(&other.bbox(), tolerance.point) && (0..PLACES).all(near)
-        };
-        if !kept.iter().any(|(_, other)| lies(other)) {
+        if !kept.iter().any(|(_, other)| lies_on(&curve, other, tolerance)) {
+            let chain = Chain::of_curve(&curve);
             kept.push((curve, chain));
         }
     }
     kept.into_iter().map(|(curve, _)| curve).collect()
+}
+
+/// Whether a curve lies on another one, told at several places.
+fn lies_on(curve: &Curve, other: &Chain, tolerance: &Tolerance) -> bool {
+    const PLACES: usize = 5;
+    let chain = Chain::of_curve(curve);
+    let near = |k: usize| other.closest(chain.point(k as f64 / (PLACES - 1) as f64)).2 <= 2.0 * tolerance.point;
+    curve.bbox().touches(&other.bbox(), tolerance.point) && (0..PLACES).all(near)
 }
