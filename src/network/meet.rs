@@ -118,9 +118,12 @@ pub fn given_twice(chains: &[Chain], tolerance: &Tolerance) -> Option<(usize, us
 
 /// The arc length of a run that stands for a place of its curve: inside within the tolerance, on any turn.
 fn on_run(run: &Run, s: f64, tolerance: &Tolerance) -> Option<f64> {
-    let (lo, hi, length) = (run.s0.min(run.s1), run.s0.max(run.s1), run.curve.length());
-    let turns: &[f64] = if run.curve.is_closed(tolerance) { &[0.0, length, -length] } else { &[0.0] };
-    turns.iter().map(|turn| s + turn).find(|s| *s >= lo - tolerance.point && *s <= hi + tolerance.point).map(|s| s.clamp(lo, hi))
+    let (lo, hi) = (run.s0.min(run.s1), run.s0.max(run.s1));
+    turns(run, tolerance)
+        .into_iter()
+        .map(|turn| s + turn)
+        .find(|s| *s >= lo - tolerance.point && *s <= hi + tolerance.point)
+        .map(|s| s.clamp(lo, hi))
 }
 
 /// A run of a chain.
@@ -152,20 +155,36 @@ fn collect(hit: Hit, a: RunOf, b: RunOf, tolerance: &Tolerance, found: &mut Vec<
             }
         }
         Hit::Overlap { a: (ta0, ta1), b: (tb0, tb1) } => {
-            let along_a = (run_a.curve.length_at(ta0), run_a.curve.length_at(ta1));
-            let along_b = (run_b.curve.length_at(tb0), run_b.curve.length_at(tb1));
+            let lengths = |run: &Run, (t0, t1): (f64, f64)| (run.curve.length_at(t0), run.curve.length_at(t1));
+            let (whole_a, whole_b) = (lengths(run_a, (ta0, ta1)), lengths(run_b, (tb0, tb1)));
+            let moved = |(s0, s1): (f64, f64), turn: f64| (s0 + turn, s1 + turn);
             // Both runs may hold only a part of the overlap: share of it from 0 to 1 that each holds.
             let held = |run: &Run, (s0, s1): (f64, f64)| {
                 let (lo, hi) = (run.s0.min(run.s1), run.s0.max(run.s1));
                 let share = |s: f64| (s - s0) / (s1 - s0);
                 (share(lo).min(share(hi)).max(0.0), share(lo).max(share(hi)).min(1.0))
             };
-            let (held_a, held_b) = (held(run_a, along_a), held(run_b, along_b));
-            let (from, to) = (held_a.0.max(held_b.0), held_a.1.min(held_b.1));
-            let at = |share: f64| (along_a.0 + (along_a.1 - along_a.0) * share, along_b.0 + (along_b.1 - along_b.0) * share);
-            push_overlap(a, b, (at(from), at(to)), tolerance, found);
+            for turn_a in turns(run_a, tolerance) {
+                for turn_b in turns(run_b, tolerance) {
+                    let (along_a, along_b) = (moved(whole_a, turn_a), moved(whole_b, turn_b));
+                    let (held_a, held_b) = (held(run_a, along_a), held(run_b, along_b));
+                    let (from, to) = (held_a.0.max(held_b.0), held_a.1.min(held_b.1));
+                    let at = |share: f64| (along_a.0 + (along_a.1 - along_a.0) * share, along_b.0 + (along_b.1 - along_b.0) * share);
+                    // Runs that hold nothing of it, or its end at most, share a point of it at most.
+                    let length = (along_a.1 - along_a.0).abs() * (to - from);
+                    if length >= -tolerance.point {
+                        push_overlap(a, b, (at(from), at(to)), tolerance, found);
+                    }
+                }
+            }
         }
     }
+}
+
+/// Whole turns by which places on the curve of a run may be moved.
+fn turns(run: &Run, tolerance: &Tolerance) -> Vec<f64> {
+    let length = run.curve.length();
+    if run.curve.is_closed(tolerance) { vec![0.0, length, -length] } else { vec![0.0] }
 }
 
 /// An overlap given by arc lengths on both curves; one of no length is a point, one of negative length nothing.
@@ -186,9 +205,7 @@ fn push_overlap(a: RunOf, b: RunOf, (from, to): ((f64, f64), (f64, f64)), tolera
 /// Two runs on one curve overlap in what both run over.
 fn on_one_curve(a: RunOf, b: RunOf, tolerance: &Tolerance, found: &mut Vec<Meeting>) {
     let (run_a, run_b) = (a.run(), b.run());
-    let length = run_a.curve.length();
-    let turns: &[f64] = if run_a.curve.is_closed(tolerance) { &[-length, 0.0, length] } else { &[0.0] };
-    for turn in turns {
+    for turn in turns(run_a, tolerance) {
         let lo = run_a.s0.min(run_a.s1).max(run_b.s0.min(run_b.s1) + turn);
         let hi = run_a.s0.max(run_a.s1).min(run_b.s0.max(run_b.s1) + turn);
         push_overlap(a, b, ((lo, lo - turn), (hi, hi - turn)), tolerance, found);
