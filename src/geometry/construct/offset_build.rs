@@ -1,7 +1,8 @@
 //! Makes offsets of plane curves: exact lines and arcs where they are, else curves that follow their base.
 //!
 //! At a corner the offset goes round on the outer side, at the same distance everywhere, and is cut back to where
-//! both sides meet on the inner one.
+//! both sides meet on the inner one. An arc inside the curve that is no larger than the distance leaves nothing: what lies beside it meets
+//! as at a corner.
 
 use std::sync::Arc;
 
@@ -30,8 +31,7 @@ pub fn offset(curve: &Curve, distance: f64, normal: DVec3, origin: Origin) -> Re
     check_plane(curve, normal)?;
     let plan = OffsetPlan { distance, normal, origin };
     let pieces = smooth_pieces(curve);
-    let sides: Result<Vec<Curve>> = pieces.iter().map(|piece| plan.smooth(piece)).collect();
-    let joined = plan.join(&pieces, sides?)?;
+    let joined = plan.join(plan.sides(pieces)?)?;
     let shape = match joined.as_slice() {
         [one] => one.shape().clone(),
         _ => Shape::Composite(Arc::new(Composite::new(joined))),
@@ -85,6 +85,14 @@ pub(crate) fn smooth_pieces(curve: &Curve) -> Vec<Curve> {
     cuts.windows(2).map(|t| piece(t[0], t[1])).collect()
 }
 
+/// A piece and its offset.
+struct OffsetSide {
+    base: Curve,
+    curve: Curve,
+    /// Pieces that vanish lie between it and the next one.
+    gap: bool,
+}
+
 /// What all pieces share.
 struct OffsetPlan {
     distance: f64,
@@ -95,6 +103,29 @@ struct OffsetPlan {
 impl OffsetPlan {
     fn too_far(&self, range: LengthRange) -> Fault {
         ValueFault::LengthOutside { argument: "distance", found: self.distance, range }.into()
+    }
+
+    /// The offsets of pieces in a row, without those that vanish between others.
+    fn sides(&self, pieces: Vec<Curve>) -> Result<Vec<OffsetSide>> {
+        let ends = (pieces.first().map(Curve::start), pieces.last().map(Curve::end));
+        let size = pieces.iter().map(|piece| piece.bbox().diagonal()).fold(0.0, f64::max);
+        let closed = ends.0.zip(ends.1).is_some_and(|(from, to)| from.distance(to) <= NEAREST * size);
+        let vanishes: Vec<bool> = pieces.iter().map(|piece| self.vanishes(piece)).collect();
+        let last = pieces.len() - 1;
+        let gone = |k: usize| vanishes[k] && (closed || k > 0 && k < last);
+        let kept: Vec<usize> = (0..pieces.len()).filter(|k| !gone(*k)).collect();
+        if kept.len() < 2 {
+            let whole = |base: Curve| Ok(OffsetSide { curve: self.smooth(&base)?, base, gap: false });
+            return pieces.into_iter().map(whole).collect();
+        }
+        let gap = |n: usize| (kept[n] + 1) % pieces.len() != kept[(n + 1) % kept.len()] && (n + 1 < kept.len() || closed);
+        let side = |n: usize| Ok(OffsetSide { base: pieces[kept[n]].clone(), curve: self.smooth(&pieces[kept[n]])?, gap: gap(n) });
+        (0..kept.len()).map(side).collect()
+    }
+
+    /// Whether nothing is left of an arc of a circle at this distance.
+    fn vanishes(&self, piece: &Curve) -> bool {
+        matches!(piece.shape(), Shape::Arc(arc) if arc.radius.is_some() && self.rounded(arc).is_none())
     }
 
     /// Offset of a piece without corners.
@@ -119,14 +150,16 @@ impl OffsetPlan {
     }
 
     fn round(&self, arc: &EllipticArc) -> Result<EllipticArc> {
+        self.rounded(arc).ok_or_else(|| self.too_far(LengthRange::BelowRadius(arc.u.length(), None)))
+    }
+
+    /// The arc at the distance; `None` where its radius is not above that.
+    fn rounded(&self, arc: &EllipticArc) -> Option<EllipticArc> {
         let radius = arc.u.length();
         let turn = arc.u.cross(arc.v).dot(self.normal).signum();
         let new = radius - self.distance * turn;
-        if new <= PARALLEL * radius {
-            return Err(self.too_far(LengthRange::BelowRadius(radius, None)));
-        }
         let scale = new / radius;
-        Ok(EllipticArc { u: arc.u * scale, v: arc.v * scale, radius: Some(new), ..*arc })
+        (new > PARALLEL * radius).then(|| EllipticArc { u: arc.u * scale, v: arc.v * scale, radius: Some(new), ..*arc })
     }
 
     /// The base must not turn tighter than the offset is far, on its side.
@@ -150,26 +183,27 @@ impl OffsetPlan {
     }
 
     /// Rounds or cuts the corners between neighbouring sides.
-    fn join(&self, bases: &[Curve], sides: Vec<Curve>) -> Result<Vec<Curve>> {
+    fn join(&self, sides: Vec<OffsetSide>) -> Result<Vec<Curve>> {
         let n = sides.len();
-        let size = bases.iter().map(|b| b.bbox().diagonal()).fold(self.distance.abs(), f64::max);
+        let size = sides.iter().map(|side| side.base.bbox().diagonal()).fold(self.distance.abs(), f64::max);
         let tolerance = Tolerance::new(NEAREST * size, size);
-        let closed = n > 1 && bases[n - 1].end().distance(bases[0].start()) <= tolerance.point;
-        let mut ranges: Vec<(f64, f64)> = sides.iter().map(Curve::domain).collect();
+        let closed = n > 1 && (sides[n - 1].gap || sides[n - 1].base.end().distance(sides[0].base.start()) <= tolerance.point);
+        let mut ranges: Vec<(f64, f64)> = sides.iter().map(|side| side.curve.domain()).collect();
         let mut corners: Vec<Option<Curve>> = vec![None; n];
         for i in 0..if closed { n } else { n - 1 } {
             let k = (i + 1) % n;
-            let (before, after) = (bases[i].directions(bases[i].domain().1).0, bases[k].directions(bases[k].domain().0).1);
+            let (here, next) = (&sides[i], &sides[k]);
+            let corner = here.base.end();
+            let (before, after) = (here.base.directions(here.base.domain().1).0, next.base.directions(next.base.domain().0).1);
             let turn = math::atan2(before.cross(after).dot(self.normal), before.dot(after));
-            if turn.abs() <= NUDGE {
+            if !here.gap && turn.abs() <= NUDGE {
                 continue;
             }
-            if turn * self.distance < 0.0 {
-                corners[i] = Some(arc_center(bases[i].end(), sides[i].end(), turn, self.normal, self.origin)?);
+            if !here.gap && turn * self.distance < 0.0 {
+                corners[i] = Some(arc_center(corner, here.curve.end(), turn, self.normal, self.origin)?);
                 continue;
             }
-            let corner = bases[i].end();
-            let meeting = self.inner_meeting(&sides[i], &sides[k], &tolerance)?;
+            let meeting = self.inner_meeting(&here.curve, &next.curve, &tolerance)?;
             let Some((ta, tb)) = meeting else {
                 return Err(self.too_far(LengthRange::MeetsAtCorner(corner)));
             };
@@ -177,11 +211,11 @@ impl OffsetPlan {
             ranges[k].0 = tb;
         }
         let mut out = Vec::new();
-        for ((side, range), corner) in sides.iter().zip(ranges).zip(corners) {
+        for ((OffsetSide { curve, .. }, range), corner) in sides.iter().zip(ranges).zip(corners) {
             if range.0 >= range.1 {
-                return Err(self.too_far(LengthRange::LeavesOfSide(side.start(), side.end())));
+                return Err(self.too_far(LengthRange::LeavesOfSide(curve.start(), curve.end())));
             }
-            out.push(side.part(range.0, range.1));
+            out.push(curve.part(range.0, range.1));
             out.extend(corner);
         }
         Ok(out)
@@ -202,6 +236,7 @@ mod tests {
     use super::*;
     use crate::geometry::closest;
     use crate::geometry::construct::build::*;
+    use crate::geometry::construct::fillet::rounded_polyline;
 
     fn square() -> Curve {
         let points = [(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)].map(|(x, y)| DVec3::new(x, y, 0.0));
@@ -217,6 +252,17 @@ mod tests {
         assert!(outside.start().distance(outside.end()) < 1e-15 && inside.start().distance(inside.end()) < 1e-9);
         let fault = offset(&square(), 2.5, DVec3::Z, Origin::NONE).unwrap_err();
         assert_eq!(fault.code().0, "E306");
+    }
+
+    #[test]
+    fn arcs_that_vanish_leave_the_corners_of_the_sharp_contour() {
+        let corners = [(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)].map(|(x, y)| DVec3::new(x, y, 0.0));
+        let round = |radius: f64| rounded_polyline(&corners, true, (radius, "round"), Origin::NONE).unwrap();
+        for (radius, distance) in [(0.5, 0.8), (1.0, 1.0 + 1e-6), (0.3, 1.9)] {
+            let inner = offset(&round(radius), distance, DVec3::Z, Origin::NONE).unwrap();
+            assert!((inner.length() - 4.0 * (4.0 - 2.0 * distance)).abs() < 1e-9, "{radius} {distance}: {}", inner.length());
+        }
+        assert_eq!(offset(&round(0.5), 2.1, DVec3::Z, Origin::NONE).unwrap_err().code().0, "E306");
     }
 
     #[test]
