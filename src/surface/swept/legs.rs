@@ -5,6 +5,7 @@ use glam::{DMat3, DVec3};
 use crate::base::fault::{Fault, Result};
 use crate::base::tolerance::{EPSILON, NUDGE, Tolerance};
 use crate::base::{job, math};
+use crate::geometry::Motion;
 use crate::network::Chain;
 use crate::surface::data::breaks::chain_breaks;
 use crate::surface::faults::SweepFault;
@@ -26,6 +27,8 @@ struct Leg {
 /// The path with a frame at every place of it.
 pub struct Legs<'a> {
     path: &'a Chain,
+    /// The path moved to where its middle is the origin: coordinates far from it are rounded more than a frame is.
+    near: Chain,
     legs: Vec<Leg>,
     /// Fractions of the corners, 0 for one where a closed path starts.
     corners: Vec<f64>,
@@ -62,29 +65,30 @@ impl<'a> Legs<'a> {
         }
         let inner = corners.iter().copied().filter(|f| *f > 0.0);
         let stops: Vec<f64> = std::iter::once(0.0).chain(inner).chain(std::iter::once(1.0)).collect();
-        let tangent = place(path, 0.0, false).1;
+        let near = path.moved(&Motion::translation(-path.bbox().center()));
+        let tangent = place(&near, 0.0, false).1;
         let mut normal = math::any_normal(tangent);
         let first = frame(tangent, normal);
         let mut legs = Vec::with_capacity(stops.len() - 1);
         for w in stops.windows(2) {
             if w[0] > 0.0 {
-                let (before, after) = sides(path, w[0]);
+                let (before, after) = sides(&near, w[0]);
                 normal = bent(before, after, normal);
             }
             let mut leg = Leg { from: w[0], to: w[1], normals: vec![(w[0], normal)] };
             // In steps from break to break, so that each is smooth.
             for stop in leg.stops(path) {
-                normal = leg.normal(path, stop);
+                normal = leg.normal(&near, stop);
             }
             legs.push(leg);
         }
         let mut twist = twist;
         if path.is_closed(tolerance) {
-            let (before, after) = sides(path, 0.0);
+            let (before, after) = sides(&near, 0.0);
             let back = bent(before, after, normal);
             twist -= math::atan2(back.dot(first.y_axis), back.dot(first.x_axis));
         }
-        Ok(Self { path, legs, corners, first, twist })
+        Ok(Self { path, near, legs, corners, first, twist })
     }
 
     /// Whether the frame comes back to where it started.
@@ -114,18 +118,18 @@ impl<'a> Legs<'a> {
     pub fn frame_at(&mut self, f: f64) -> (DVec3, DMat3) {
         let leg = self.legs.iter().position(|leg| f <= leg.to).unwrap_or(self.legs.len() - 1);
         if !self.corner(f) || f == 0.0 {
-            return (place(self.path, f, f >= self.legs[leg].to).1, self.turned(leg, f));
+            return (place(&self.near, f, f >= self.legs[leg].to).1, self.turned(leg, f));
         }
-        let (before, after) = sides(self.path, f);
+        let (before, after) = sides(&self.near, f);
         let middle = bisector(before, after);
-        let normal = bent(before, middle, self.legs[leg].normal(self.path, f));
+        let normal = bent(before, middle, self.legs[leg].normal(&self.near, f));
         (middle, twisted(frame(middle, normal), self.twist * f) * self.first.transpose())
     }
 
     /// The rotation at a fraction of a run.
     pub fn turned(&mut self, leg: usize, f: f64) -> DMat3 {
-        let normal = self.legs[leg].normal(self.path, f);
-        let tangent = place(self.path, f, f >= self.legs[leg].to).1;
+        let normal = self.legs[leg].normal(&self.near, f);
+        let tangent = place(&self.near, f, f >= self.legs[leg].to).1;
         twisted(frame(tangent, normal), self.twist * f) * self.first.transpose()
     }
 
@@ -161,10 +165,10 @@ impl<'a> Legs<'a> {
         if !self.corner(f) {
             return Ok(None);
         }
-        let (arriving, leaving) = sides(self.path, if f >= 1.0 { 0.0 } else { f });
-        let chord = self.path.point(run.1).distance(self.path.point(run.0));
-        let length = (run.1 - run.0) * self.path.length();
-        if length - chord > EPSILON * self.path.length() {
+        let (arriving, leaving) = sides(&self.near, if f >= 1.0 { 0.0 } else { f });
+        let chord = self.near.point(run.1).distance(self.near.point(run.0));
+        let length = (run.1 - run.0) * self.near.length();
+        if length - chord > EPSILON * self.near.length() {
             return Err(SweepFault::BentRun { path: self.path.origin(), at: self.path.point(f), fraction: f }.into());
         }
         let (t, n) = (if before { arriving } else { leaving }, bisector(arriving, leaving));
@@ -201,7 +205,7 @@ impl<'a> Legs<'a> {
     pub fn corner_after(&self, leg: usize) -> Option<(DVec3, DVec3, DVec3)> {
         let f = self.legs[leg].to;
         self.corner(f).then(|| {
-            let (before, after) = sides(self.path, if f >= 1.0 { 0.0 } else { f });
+            let (before, after) = sides(&self.near, if f >= 1.0 { 0.0 } else { f });
             (self.path.point(f), before, after)
         })
     }

@@ -38,6 +38,8 @@ struct Projecting {
     largest_newton_step: f64,
     /// Starts along each direction when no place is known.
     starts_each_way: usize,
+    /// Roundings of a coordinate that a Newton step is short within.
+    roundings: f64,
 }
 
 const PROJECT: Projecting = Projecting {
@@ -48,6 +50,7 @@ const PROJECT: Projecting = Projecting {
     steps_between_stops: 32,
     largest_newton_step: 0.25,
     starts_each_way: 8,
+    roundings: 8.0,
 };
 
 /// How a curve gets to the surface.
@@ -236,7 +239,9 @@ impl Projector<'_> {
                     return None;
                 }
                 let next = self.surface.hold(uv + step.clamp_length_max(PROJECT.largest_newton_step));
-                let still = (next - uv).length() <= EPSILON;
+                // Far from the origin coordinates are rounded by more than a step may be short.
+                let rounding = PROJECT.roundings * s.p.abs().max_element() / s.du.length().min(s.dv.length());
+                let still = (next - uv).length() <= EPSILON * rounding.max(1.0);
                 uv = next;
                 if still {
                     // At rest away from the line: the line misses the surface.
