@@ -1,6 +1,7 @@
 //! What is wrong with tokens, brackets and lines, in words.
 
 use crate::base::limits::SOURCE_BYTES;
+use crate::base::text::is_unseen;
 use crate::lang::diag::diagnostic::{Diagnostic, FileId};
 use crate::lang::diag::span::Span;
 use crate::lang::syntax::keywords::{KeywordDoc, openers};
@@ -312,7 +313,7 @@ fn meant_sign(sign: &str) -> Option<&'static str> {
 
 /// A character as it can be printed.
 fn shown(c: char) -> String {
-    if c.is_control() || c.is_whitespace() { c.escape_default().to_string() } else { format!("`{c}`") }
+    if c.is_control() || c.is_whitespace() || is_unseen(c) { c.escape_default().to_string() } else { format!("`{c}`") }
 }
 
 fn bad_number(text: &str, unit: usize, fault: Fault, file: FileId, at: Span) -> Diagnostic {

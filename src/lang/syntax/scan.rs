@@ -7,6 +7,7 @@
 use unicode_ident::{is_xid_continue, is_xid_start};
 
 use crate::base::limits::NESTED_BRACKETS;
+use crate::base::text::is_unseen;
 use crate::lang::diag::span::Span;
 use crate::lang::syntax::mistake::Mistake;
 use crate::lang::syntax::number;
@@ -195,7 +196,7 @@ impl Scanner<'_> {
             self.at += ascii;
             match rest.get(ascii) {
                 Some(byte) if !byte.is_ascii() => match self.source[self.at..].chars().next() {
-                    Some(c) if is_xid_continue(c) => self.at += c.len_utf8(),
+                    Some(c) if is_xid_continue(c) && !is_unseen(c) => self.at += c.len_utf8(),
                     _ => return,
                 },
                 _ => return,
@@ -213,7 +214,7 @@ impl Scanner<'_> {
     /// A character beyond ASCII: a word, or nothing that belongs here.
     fn wide(&mut self) {
         let Some(c) = self.source[self.at..].chars().next() else { return };
-        if is_xid_start(c) { self.word() } else { self.strange(c.len_utf8()) }
+        if is_xid_start(c) && !is_unseen(c) { self.word() } else { self.strange(c.len_utf8()) }
     }
 
     fn strange(&mut self, bytes: usize) {
