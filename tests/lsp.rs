@@ -348,6 +348,19 @@ fn large_and_strange_texts_are_served() {
 }
 
 #[test]
+fn a_body_that_is_no_message_is_answered() {
+    let mut editor = Editor::start();
+    for (body, code) in [("{nonsense", -32700), ("[1, 2]", -32600)] {
+        write!(editor.to, "Content-Length: {}\r\n\r\n{body}", body.len()).unwrap();
+        editor.to.flush().unwrap();
+        assert_eq!(editor.receive()["error"]["code"], code, "{body}");
+    }
+    editor.ask("shutdown", Value::Null);
+    editor.tell("exit", Value::Null);
+    assert_eq!(editor.child.wait().unwrap().code(), Some(0));
+}
+
+#[test]
 fn the_end_of_a_session_is_clean() {
     // Requests behind `shutdown` are refused, `exit` ends it.
     let mut editor = Editor::start();

@@ -7,6 +7,7 @@ mod names;
 mod results;
 mod server;
 mod text;
+mod wires;
 
 use std::time::{Duration, Instant};
 
@@ -29,15 +30,14 @@ fn arguments(command: clap::Command) -> clap::Command {
 
 fn run(matches: &ArgMatches, terminal: &Terminal) -> Exit {
     options::read_limits(matches);
-    let (connection, threads) = Connection::stdio();
+    let (connection, wires) = wires::stdio();
     let served = serve(&connection);
     drop(connection);
-    match (served, threads.join()) {
+    match (served, wires.join()) {
         (Ok(true), Ok(())) => Exit::Fine,
         // The protocol asks for 1 when nobody said `shutdown`.
         (Ok(false), Ok(())) => Exit::Errors,
-        (Err(text), _) => terminal.wrong_usage(&format!("the editor broke off: {text}")),
-        (_, Err(error)) => terminal.wrong_usage(&format!("the editor broke off: {error}")),
+        (Err(text), _) | (_, Err(text)) => terminal.wrong_usage(&format!("the editor broke off: {text}")),
     }
 }
 
