@@ -1,4 +1,4 @@
-//! Ctrl-C, and what becomes of a panic.
+//! Ctrl-C and other signals that end a run, and what becomes of a panic.
 
 use std::io::{IsTerminal, Write};
 use std::panic;
@@ -69,20 +69,45 @@ pub fn set_limits(elements: Option<u64>, work: Option<u64>) {
 fn handle() {
     // Without a handler the system ends the program at Ctrl-C; only temporary files stay then. A second call changes
     // nothing.
-    let _ = ctrlc::set_handler(|| {
+    let first = ctrlc::set_handler(|| {
         watched().job.cancel();
-        if watched().session {
-            return;
+        if !watched().session {
+            end(Exit::Interrupted as i32);
         }
-        thread::sleep(PATIENCE);
-        watched().outputs.iter().for_each(Staging::discard);
-        if std::io::stderr().is_terminal() {
-            // The line of progress goes, whatever it shows.
-            let _ = std::io::stderr().write_all(b"\r\x1b[2K\x1b[?25h");
+    });
+    if first.is_ok() {
+        end_when_told();
+    }
+}
+
+/// Ends the program once its work had time to end by itself, without a half file.
+fn end(status: i32) {
+    thread::sleep(PATIENCE);
+    watched().outputs.iter().for_each(Staging::discard);
+    if std::io::stderr().is_terminal() {
+        // The line of progress goes, whatever it shows.
+        let _ = std::io::stderr().write_all(b"\r\x1b[2K\x1b[?25h");
+    }
+    std::process::exit(status);
+}
+
+/// SIGTERM, and SIGHUP of a terminal that is gone, end sessions too.
+#[cfg(unix)]
+fn end_when_told() {
+    use signal_hook::consts::{SIGHUP, SIGTERM};
+    // What shells say of a program that a signal ended.
+    const KILLED: i32 = 128;
+    let Ok(mut signals) = signal_hook::iterator::Signals::new([SIGTERM, SIGHUP]) else { return };
+    thread::spawn(move || {
+        for signal in signals.forever() {
+            watched().job.cancel();
+            end(KILLED + signal);
         }
-        std::process::exit(Exit::Interrupted as i32);
     });
 }
+
+#[cfg(not(unix))]
+fn end_when_told() {}
 
 /// Registers outputs that must not stay half written.
 pub fn protect(outputs: &Staging) {
