@@ -1,5 +1,7 @@
 //! Stretches of a script as a golden quotes them: its tokens, with a blank where the script has blanks or a comment.
 
+use std::borrow::Cow;
+
 use crate::lang::syntax::token_spans;
 
 /// Tokens at each end of a quoted stretch; of a longer one the middle is left out.
@@ -7,16 +9,27 @@ const TOKENS: usize = 16;
 /// What stands for the middle.
 const CUT: char = '…';
 
-/// The tokens of a stretch; what is no text of the language falls apart in some way that is always the same.
-pub fn tokens(text: &str) -> Vec<&str> {
+/// The tokens of a stretch, numbers in their shortest spelling; what is no text of the language falls apart in some way that is always the
+/// same.
+pub fn tokens(text: &str) -> Vec<Cow<'_, str>> {
     let inside = |part| token_spans(part).into_iter().filter_map(move |span| slice(part, span.start, span.end));
     // Where the middle was left out the quotation is two stretches.
     let mut found = Vec::new();
     for (k, part) in text.split(CUT).enumerate() {
-        found.extend((k > 0).then_some("…"));
-        found.extend(inside(part));
+        found.extend((k > 0).then_some(Cow::Borrowed("…")));
+        found.extend(inside(part).map(shortest));
     }
     found
+}
+
+/// A number with its unit as it is written with the fewest digits; any other token as it is.
+fn shortest(token: &str) -> Cow<'_, str> {
+    if !token.starts_with(|c: char| c.is_ascii_digit() || c == '.') {
+        return Cow::Borrowed(token);
+    }
+    let ends = token.char_indices().map(|(at, c)| at + c.len_utf8()).rev();
+    let number = ends.into_iter().find_map(|end| Some((token[..end].parse::<f64>().ok()?, end)));
+    number.map_or(Cow::Borrowed(token), |(value, end)| Cow::Owned(format!("{value:?}{}", &token[end..])))
 }
 
 /// Whether a token is a name of the script.
@@ -60,6 +73,8 @@ mod tests {
         assert_eq!(tokens(&one), tokens("line((0, 0, 0), (1,0,0))"));
         assert_ne!(tokens(&one), tokens("line((0, 0, 0), (2,0,0))"));
         assert_eq!(tokens("\"a  b\""), tokens("\"a  b\" // c"));
+        assert_eq!(tokens("x == 0.001 + 20mm"), tokens("x == 0.00100 + 2e1mm"));
+        assert_ne!(tokens("20mm"), tokens("20m"));
     }
 
     #[test]

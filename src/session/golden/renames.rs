@@ -118,7 +118,7 @@ impl Renames {
 
     fn same_source(&mut self, old: &str, new: &str, lenient: bool) -> bool {
         let (one, other) = (tokens(old), tokens(new));
-        one.len() == other.len() && one.iter().zip(other).all(|(a, b)| self.same_token(a, b, lenient))
+        one.len() == other.len() && one.iter().zip(other).all(|(a, b)| self.same_token(a, &b, lenient))
     }
 
     fn same_token(&mut self, old: &str, new: &str, lenient: bool) -> bool {

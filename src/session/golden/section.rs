@@ -1,5 +1,6 @@
 //! What a run found, as the lines of a golden file.
 
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::cells::{CellValue, measure_of, together};
@@ -40,7 +41,7 @@ pub fn of(outcome: &Outcome, details: Details, hide: &str) -> CaseLines {
     let row = |d: &Diagnostic| diagnostic(d, &outcome.sources, hide);
     lines.extend(outcome.diagnostics.iter().map(row));
     let texts = (0..).map_while(|k| outcome.sources.get(FileId::at(k)));
-    let names = texts.flat_map(|file| quote::tokens(&file.text).into_iter().filter(|t| quote::is_name(t)).map(str::to_owned)).collect();
+    let names = texts.flat_map(|file| quote::tokens(&file.text).into_iter().filter(|t| quote::is_name(t)).map(Cow::into_owned)).collect();
     CaseLines { lines, size, names }
 }
 
