@@ -37,6 +37,7 @@ mod intersect_surfaces;
 mod io;
 mod isoline;
 mod joins;
+mod joints;
 mod layouts;
 mod library;
 mod lists;
