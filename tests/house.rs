@@ -89,6 +89,7 @@ const DOORS: &[(&str, &[&str])] = &[
     ("clap_complete", &["src/cli/"]),
     ("indicatif", &["src/cli/"]),
     ("ctrlc", &["src/cli/"]),
+    ("signal_hook", &["src/cli/"]),
     ("flate2", &["src/cli/view/"]),
     ("getrandom", &["src/cli/view/gate.rs"]),
 ];
@@ -99,17 +100,17 @@ const OUTSIDE: &[&str] = &["std::fs", "std::env", "std::time", "println!", "epri
 /// Lines a floor may have, tests included; a higher number is a change of its own, with the reason.
 const CEILINGS: &[(&str, usize)] = &[
     ("base", 4_800),
-    ("geometry", 6_450),
+    ("geometry", 6_550),
     ("network", 5_150),
-    ("surface", 30_500),
-    ("model", 7_100),
+    ("surface", 31_200),
+    ("model", 7_300),
     ("mesh", 34_700),
     ("hydrostatics", 2_300),
     ("io", 18_600),
     ("draw", 4_400),
-    ("lang", 33_100),
-    ("session", 14_200),
-    ("cli", 8_000),
+    ("lang", 33_300),
+    ("session", 14_300),
+    ("cli", 8_100),
     ("library", 2_000),
 ];
 

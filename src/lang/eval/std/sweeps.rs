@@ -202,7 +202,7 @@ crate::fields! {
         ])
     }).collect());
 
-    /// The place in which it crosses itself, as W669 reports it; an empty list where none is found.
+    /// The place in which it crosses itself, as W669 reports it. The list is empty where none is found.
     fn self_crossings(
         /// The surface.
         s: Surface,
