@@ -30,7 +30,6 @@ LONGEST = 300
 GAPS = "borders that became one edge are apart by more than that, as the model allows"
 JUDGE = "the other kernel measures a surface of several rational pieces wrong; the area of its points on a fine grid is right"
 PARABOLAS = "the other kernel takes too few points for the area of one biquadratic patch; by 80 x 80 Gauss points of the face it read the areas agree to 1e-13"
-SMALL = "small faces between curves that are within the tolerance"
 THIN = "a thin wall between surfaces that are within the tolerance"
 VOLUME_ONLY = "the areas of a thin wall agree, its volume does not: the cause is not found"
 ALONG = "a cut that runs along the seam within the tolerance"
@@ -41,7 +40,6 @@ KNOWN = {
     "fender: fender": GAPS,
     "gap_meshes: wave": GAPS,
     "glued: roof": GAPS,
-    "round: bite": SMALL,
     "shallow_crossings: octant": ALONG,
     "shell_walls: casing": THIN,
     "walls: bottle": JUDGE,
