@@ -54,7 +54,7 @@ pub const COSINE_ROUNDING: f64 = 1e-9;
 pub const MEASURE_ACCURACY: f64 = 1e-10;
 /// Relative errors of integrals up to which what does not fall from one size of cells to the next is rounding.
 pub const MEASURE_ROUNDING: f64 = 1e-8;
-/// Relative errors of measures from which on they are told.
+/// W228 tells of a measure whose estimated relative error is larger than this.
 pub const MEASURE_TOLD: f64 = 1e-6;
 /// What is integrated counts as at least this share of what it could be with the same lengths: below that it is rounding.
 pub const LEAST_SIZE: f64 = 1e-4;

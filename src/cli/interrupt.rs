@@ -95,7 +95,7 @@ fn end(status: i32) {
 #[cfg(unix)]
 fn end_when_told() {
     use signal_hook::consts::{SIGHUP, SIGTERM};
-    // What shells say of a program that a signal ended.
+    // Shells report a program that a signal ended as 128 and the number of the signal.
     const KILLED: i32 = 128;
     let Ok(mut signals) = signal_hook::iterator::Signals::new([SIGTERM, SIGHUP]) else { return };
     thread::spawn(move || {

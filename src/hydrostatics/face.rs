@@ -121,8 +121,8 @@ impl Face {
         face
     }
 
-    /// Takes a net in place of a surface blended from many curves, each place of which takes an evaluation of all of them; says how far
-    /// off that is at most, model units.
+    /// Replaces a surface that is blended from many curves by a net, which is cheaper to evaluate. Returns a bound of the distance between
+    /// the two, model units.
     fn simplified(&mut self, surface: &Surface, reach: f64) -> f64 {
         let (us, vs) = surface.breaks();
         let plain = self.prepared.evaluator().has_power_form() || surface.domain() != Domain::Square;

@@ -60,15 +60,15 @@ struct Rows<const N: usize> {
 }
 
 impl<const N: usize> Strips<N> {
-    /// Strips between ascending values of v, in each of them cells between ascending values of u, ends included; both are cut further
-    /// where the function asks for it.
-    pub fn new((us, vs): (&[f64], &[f64]), rules: Rules, value: &impl Fn(f64, f64) -> Sized<N>) -> Self {
+    /// Strips between ascending values of v, in each of them cells between ascending values of u, ends included. Cells are cut further
+    /// where the rules differ, strips where the table of a few terms would not tell the integrals.
+    pub fn new((us, vs): (&[f64], &[f64]), rules: Rules, tabled: bool, value: &impl Fn(f64, f64) -> Sized<N>) -> Self {
         let mut found = Self { strips: Vec::with_capacity(vs.len()), error: [0.0; N] };
         let mut open: Vec<((f64, f64), u32)> = vs.windows(2).rev().map(|w| ((w[0], w[1]), 0)).collect();
         let mut halvings = 0;
         while let Some((v, depth)) = open.pop() {
             let rows = Rows::new(us, v, rules, value);
-            let running = rows.running();
+            let running = if tabled { rows.running() } else { Vec::new() };
             let told = is_told(&running, rules.accuracy, &rows.most);
             if !told && depth < HALVINGS.0 && halvings < HALVINGS.1 {
                 halvings += 1;
@@ -86,12 +86,6 @@ impl<const N: usize> Strips<N> {
     pub fn plain((us, vs): (&[f64], &[f64])) -> Self {
         let strip = |w: &[f64]| Strip { v: (w[0], w[1]), us: us.to_vec(), running: Vec::new() };
         Self { strips: vs.windows(2).map(strip).collect(), error: [0.0; N] }
-    }
-
-    /// The same cells without a table.
-    pub fn untold(mut self) -> Self {
-        self.strips.iter_mut().for_each(|strip| strip.running.clear());
-        self
     }
 
     /// What integrals over a surface are off by at most because rows are, by the estimates of the rules.
@@ -212,7 +206,7 @@ mod tests {
     fn strips(cuts: &[f64], value: &impl Fn(f64, f64) -> f64) -> Strips<1> {
         let (coarse, fine) = (gauss_legendre(8), gauss_legendre(12));
         let value = |u: f64, v: f64| ([value(u, v)], [value(u, v).abs()]);
-        Strips::new((cuts, cuts), Rules { coarse: &coarse, fine: &fine, accuracy: 1e-11 }, &value)
+        Strips::new((cuts, cuts), Rules { coarse: &coarse, fine: &fine, accuracy: 1e-11 }, true, &value)
     }
 
     /// ∫ from 0 to u of (2 + u) e^v, which has breaks nowhere and is cut all the same.

@@ -104,18 +104,8 @@ where
         let rules = Rules { coarse: &gauss_legendre(CHECKED.0), fine: &across, accuracy: CHECKED.1 * accuracy };
         // A triangle's rows are not all as long.
         let is_triangle = surface.ground() == Domain::Triangle;
-        let strips = if is_triangle { Strips::plain((&us, &vs)) } else { Strips::new((&us, &vs), rules, &value) };
-        Self {
-            integrand,
-            evaluator,
-            cost,
-            ways: ways(evaluator, &bases),
-            breaks,
-            closed_v: closed.1,
-            strips: if below.is_some() { strips.untold() } else { strips },
-            across,
-            below,
-        }
+        let strips = if is_triangle { Strips::plain((&us, &vs)) } else { Strips::new((&us, &vs), rules, below.is_none(), &value) };
+        Self { integrand, evaluator, cost, ways: ways(evaluator, &bases), breaks, closed_v: closed.1, strips, across, below }
     }
 
     /// Point and first derivatives: nothing here takes second ones, which are left out.

@@ -119,11 +119,7 @@ pub fn given_twice(chains: &[Chain], tolerance: &Tolerance) -> Option<(usize, us
 /// The arc length of a run that stands for a place of its curve: inside within the tolerance, on any turn.
 fn on_run(run: &Run, s: f64, tolerance: &Tolerance) -> Option<f64> {
     let (lo, hi) = (run.s0.min(run.s1), run.s0.max(run.s1));
-    turns(run, tolerance)
-        .into_iter()
-        .map(|turn| s + turn)
-        .find(|s| *s >= lo - tolerance.point && *s <= hi + tolerance.point)
-        .map(|s| s.clamp(lo, hi))
+    turns(run, tolerance).map(|turn| s + turn).find(|s| *s >= lo - tolerance.point && *s <= hi + tolerance.point).map(|s| s.clamp(lo, hi))
 }
 
 /// A run of a chain.
@@ -182,9 +178,9 @@ fn collect(hit: Hit, a: RunOf, b: RunOf, tolerance: &Tolerance, found: &mut Vec<
 }
 
 /// Whole turns by which places on the curve of a run may be moved.
-fn turns(run: &Run, tolerance: &Tolerance) -> Vec<f64> {
+fn turns(run: &Run, tolerance: &Tolerance) -> impl Iterator<Item = f64> + use<> {
     let length = run.curve.length();
-    if run.curve.is_closed(tolerance) { vec![0.0, length, -length] } else { vec![0.0] }
+    [0.0, length, -length].into_iter().take(if run.curve.is_closed(tolerance) { 3 } else { 1 })
 }
 
 /// An overlap given by arc lengths on both curves; one of no length is a point, one of negative length nothing.

@@ -163,28 +163,27 @@ for (const [cut, flip] of [
   });
 }
 
+/** Cuts across each axis by the button and asks that the whole cap is seen. */
+async function areSeen(page) {
+  for (const axis of ['y', 'z', 'x']) {
+    await page.getByRole('button', { name: `Section across ${axis}` }).click();
+    await page.waitForTimeout(250);
+    await picture(page, `page-section-away-${axis}`);
+    const k = 'xyz'.indexOf(axis);
+    await isFilled(page, axis, LOW[k] + SIZE[k] * 0.5);
+  }
+}
+
 test('a section keeps the half away from the eye, so that the cut is seen', async () => {
   await over(
     tank(),
     async ({ page }) => {
       await page.locator('#picture').focus();
       await page.keyboard.press('s');
-      for (const axis of ['y', 'z', 'x']) {
-        await page.getByRole('button', { name: `Section across ${axis}` }).click();
-        await page.waitForTimeout(250);
-        await picture(page, `page-section-away-${axis}`);
-        const k = 'xyz'.indexOf(axis);
-        await isFilled(page, axis, LOW[k] + SIZE[k] * 0.5);
-      }
+      await areSeen(page);
       // From behind it is the other one.
       await page.evaluate(() => (location.hash = `${location.hash.replace(/&?view=[^&]*/, '')}&view=3.7,-0.6,36,50,16,9`));
-      for (const axis of ['y', 'z', 'x']) {
-        await page.getByRole('button', { name: `Section across ${axis}` }).click();
-        await page.waitForTimeout(250);
-        await picture(page, `page-section-away-${axis}`);
-        const k = 'xyz'.indexOf(axis);
-        await isFilled(page, axis, LOW[k] + SIZE[k] * 0.5);
-      }
+      await areSeen(page);
       const { flip } = (await state(page)).settings.cut;
       await page.getByRole('button', { name: 'Other side' }).click();
       assert.equal((await state(page)).settings.cut.flip, !flip);

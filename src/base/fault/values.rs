@@ -159,7 +159,7 @@ pub enum ValueFault {
     },
     /// W228: a measure is known to few digits.
     RoughMeasure {
-        /// What is measured.
+        /// The surface, shell or part.
         of: Origin,
         /// Which measure: "the area".
         what: &'static str,

@@ -80,7 +80,7 @@ fn body(input: &mut impl BufRead) -> io::Result<Option<Vec<u8>>> {
     if (body.len() as u64) < size { Err(io::ErrorKind::UnexpectedEof.into()) } else { Ok(Some(body)) }
 }
 
-/// What a body says, or why it is no message, with the code of JSON-RPC.
+/// Reads a body as a message. The error is a code of JSON-RPC and the reason in words.
 fn message(body: &[u8]) -> Result<Message, (ErrorCode, String)> {
     let value: Value =
         serde_json::from_slice(body).map_err(|error| (ErrorCode::ParseError, format!("the message is not JSON: {error}")))?;

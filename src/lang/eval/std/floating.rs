@@ -117,7 +117,8 @@ fn bodies_apart(cx: &mut Cx, values: &[Value]) -> Result<Arc<Body>, Halt> {
     for shell in &parts {
         let glued = cx.glued(module, shell)?;
         let edges = free_edges(cx, shell)?;
-        let own = Body::of_faces(shell.origin, &glued.faces(), edges.clone(), tolerance.max(glued.shell.near))?;
+        let reach = tolerance.max(glued.shell.near);
+        let own = glued.body(|| Ok(Body::of_faces(shell.origin, &glued.faces(), edges.clone(), reach)?))?;
         faces.extend(glued.faces().into_iter().map(|(surface, other)| (surface, other != own.turned_inwards())));
         free.extend(edges);
         near = near.max(glued.shell.near);

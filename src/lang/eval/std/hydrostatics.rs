@@ -40,7 +40,8 @@ builtins! {
     ///
     /// The model's x runs forward, y to port and z up. The hull is a closed shell, one that is open at the top, half of one (on one side
     /// of y = 0 and open there: it counts twice), or a mesh. Only what is above the water and the plane y = 0 of a half may be open:
-    /// E656 names edges that are open below the water.
+    /// E656 names edges that are open below the water. Several hulls that share no edge float together; room that is inside two of them
+    /// counts twice.
     ///
     /// `draft` is the height of the water over the base line (`base:`, else z = 0), at midship on the centre line. `trim` is positive by the
     /// stern (small x deeper), `heel` to starboard (negative y deeper). `lcb` and `lcf` are counted from `midship:`, forward positive;

@@ -7,7 +7,7 @@ use glam::DVec3;
 use crate::base::fault::ValueFault;
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
-use crate::lang::eval::std::measures::{area_of, box_of};
+use crate::lang::eval::std::measures::{area_of, box_of, told};
 use crate::lang::values::conversions::{Area, Length, Point, Volume};
 use crate::lang::values::part::PartValue;
 use crate::lang::values::value::Value;
@@ -51,8 +51,9 @@ fn volumes(cx: &mut Cx, part: &PartValue) -> Result<(f64, DVec3), Halt> {
     for body in part.solids() {
         let Value::Shell(shell) = body else { continue };
         let solid = cx.solid(&shell)?;
-        volume += solid.volume.abs();
-        moment += solid.centroid * solid.volume.abs();
+        let own = told(cx, "the volume", shell.origin, (solid.volume.abs(), solid.error));
+        volume += own;
+        moment += solid.centroid * own;
     }
     if volume > 0.0 { Ok((volume, moment / volume)) } else { Err(nothing()) }
 }
