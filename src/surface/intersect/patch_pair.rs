@@ -10,6 +10,7 @@ use glam::DVec3;
 
 use crate::base::bbox::Box3;
 use crate::base::job;
+use crate::base::tolerance::TOLD_APART;
 use crate::surface::closest::foot::FootSearch;
 use crate::surface::intersect::known_curves::KnownCurve;
 use crate::surface::intersect::march::Branch;
@@ -150,7 +151,7 @@ impl PairSearch<'_> {
     }
 
     /// Whether a common place of two cells is known; a new one is marched from. Where a line through a larger pair is known a march that
-    /// comes to a halt began at an end of it.
+    /// comes to a halt at an end of it is that line.
     fn settled(&mut self, i: usize, j: usize, known: bool) -> Result<bool, Stopped> {
         self.looked_at += SEARCH.pairs_per_solution;
         let (x, y) = (self.a.cell(i), self.b.cell(j));
@@ -160,11 +161,17 @@ impl PairSearch<'_> {
         if !self.common.branches.iter().any(|branch| pair.passes(branch, &spot)) {
             match pair.march(spot, self.size) {
                 Ok(branch) => self.common.branches.push(branch),
-                Err(_) if known => {}
+                Err(at) if known && self.ends_at(at) => {}
                 Err(at) => return Err(Stopped::Lost(at)),
             }
         }
         Ok(true)
+    }
+
+    /// Whether a line that is known ends at a place.
+    fn ends_at(&self, at: DVec3) -> bool {
+        let ends = self.common.branches.iter().flat_map(|branch| [branch.spots.first(), branch.spots.last()]).flatten();
+        ends.into_iter().any(|spot| spot.p.distance(at) <= TOLD_APART * self.point)
     }
 
     /// Flat cells along each other: a touch when they come within the tolerance.
