@@ -10,6 +10,7 @@ use crate::lang::diag::diagnostic::Diagnostic;
 use crate::lang::diag::span::Span;
 use crate::lang::eval::bind::Blame;
 use crate::lang::eval::context::Cx;
+use crate::lang::eval::feet::KeptFeet;
 use crate::lang::eval::halt::Halt;
 use crate::lang::eval::memory::Dependencies;
 use crate::lang::eval::module::Module;
@@ -136,6 +137,8 @@ pub struct Machine {
     pub(crate) unknown: crate::lang::eval::misspelt::Unknowns,
     /// What the declaration being evaluated asked for beside values.
     pub(crate) asked: Dependencies,
+    /// Surfaces made ready for their nearest points.
+    pub(crate) feet: KeptFeet,
     /// Shells that something of was asked for, by script and expression.
     pub(crate) glued: std::collections::BTreeMap<(ModuleId, Origin), Vec<crate::lang::eval::glued::Asked>>,
 }
@@ -164,6 +167,7 @@ impl Default for Machine {
             filed: Vec::new(),
             unknown: crate::lang::eval::misspelt::Unknowns::new(),
             asked: Dependencies::default(),
+            feet: KeptFeet::default(),
             glued: std::collections::BTreeMap::new(),
         }
     }

@@ -13,6 +13,7 @@ pub mod element_words;
 pub mod evaluate;
 pub mod expr;
 pub mod faults;
+pub mod feet;
 pub mod glued;
 pub mod halt;
 pub mod imported_faces;

@@ -83,6 +83,11 @@ impl Nearest {
         &self.surface
     }
 
+    /// The samples held.
+    pub fn samples(&self) -> usize {
+        self.sampled.get().map_or(0, |sampled| sampled.samples.len())
+    }
+
     /// The nearest point of the surface.
     pub fn at(&self, p: DVec3) -> Closest {
         job::poll();

@@ -173,6 +173,11 @@ impl Samples {
         (self.columns.at.len(), self.rows.at.len())
     }
 
+    /// How many they are.
+    pub fn len(&self) -> usize {
+        self.points.len()
+    }
+
     /// The places of all samples in the square, row by row.
     pub fn places(&self) -> impl Iterator<Item = (f64, f64)> {
         self.rows.at.iter().flat_map(|y| self.columns.at.iter().map(|x| (*x, *y)))

@@ -3,6 +3,8 @@
 //! A few places along an edge refuse most. What they grant is looked at again piece by piece of the curve that carries the
 //! edge and of what it may lie on: between knots both are polynomials, and those that agree at many places are one.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use crate::base::bbox::Box3;
@@ -76,7 +78,7 @@ pub enum Feet {
     /// A curve.
     Curve(Chain),
     /// Surfaces, each made ready.
-    Surfaces(Vec<Surface>, Vec<Nearest>),
+    Surfaces(Vec<Surface>, Vec<Arc<Nearest>>),
 }
 
 impl Feet {
@@ -99,12 +101,17 @@ impl Feet {
 impl Carrier {
     /// Ready for many points.
     pub fn feet(&self, cx: &mut Cx) -> Result<Feet, Halt> {
-        let of = |surfaces: &[Surface]| Feet::Surfaces(surfaces.to_vec(), surfaces.iter().map(Nearest::new).collect());
+        let of = |cx: &mut Cx, surfaces: &[Surface]| {
+            Feet::Surfaces(surfaces.to_vec(), surfaces.iter().map(|surface| cx.machine.feet.of(surface)).collect())
+        };
         Ok(match self {
             Self::Curve(chain) => Feet::Curve(chain.clone()),
-            Self::Surface(surface) => of(std::slice::from_ref(surface)),
-            Self::Shell(shell) => of(&shell.surfaces),
-            Self::Plane(plane) => of(&[unbounded(plane.at, plane.normal, cx.origin())?]),
+            Self::Surface(surface) => of(cx, std::slice::from_ref(surface)),
+            Self::Shell(shell) => of(cx, &shell.surfaces),
+            Self::Plane(plane) => {
+                let plane = unbounded(plane.at, plane.normal, cx.origin())?;
+                of(cx, &[plane])
+            }
         })
     }
 }

@@ -1,5 +1,7 @@
 //! Distances and angles between points, curves and faces, and how far points are from a surface.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use crate::base::fault::ValueFault;
@@ -66,7 +68,7 @@ fn distance(cx: &mut Cx, a: Value, b: Value) -> Result<Quantity, Halt> {
         (Figure::Point(p), Figure::Curve(c)) | (Figure::Curve(c), Figure::Point(p)) => least([c.closest(place(cx, p)?).2].into_iter()),
         (Figure::Point(p), Figure::Faces(f)) | (Figure::Faces(f), Figure::Point(p)) => {
             let p = place(cx, p)?;
-            least(f.iter().map(|s| Nearest::new(s).at(p).distance))
+            least(f.iter().map(|s| cx.machine.feet.of(s).at(p).distance))
         }
         (Figure::Curve(a), Figure::Curve(b)) => {
             let (p, q) = closest_points(&a, &b);
@@ -174,8 +176,8 @@ builtins! {
             return Err(ValueFault::OutsideRange { argument: "points", found, range }.into());
         }
         let (surfaces, curve) = match &from {
-            CurveOrFaces::Faces(faces) => (faces.surfaces().iter().map(Nearest::new).collect::<Vec<Nearest>>(), None),
-            CurveOrFaces::Curve(chain) => (Vec::new(), Some(chain.to_curve()?)),
+            CurveOrFaces::Faces(faces) => (faces.surfaces().iter().map(|s| cx.machine.feet.of(s)).collect(), None),
+            CurveOrFaces::Curve(chain) => (Vec::<Arc<Nearest>>::new(), Some(chain.to_curve()?)),
         };
         let off = par::map(points.len(), |k| {
             let p = points[k].0;

@@ -10,7 +10,6 @@ use crate::lang::eval::std::kinds::{CurveOrSurface, LinkOf, Meeting, NetworkOf, 
 use crate::lang::values::conversions::{Length, NodePlace, Point, Rest, Station};
 use crate::lang::values::value::Value;
 use crate::network::{Chain, LinkId};
-use crate::surface::Nearest;
 use crate::surface::points::even_points::{MOST, even_points};
 use crate::{builtins, fields};
 
@@ -90,7 +89,7 @@ builtins! {
         of: ThingsOrCurve,
         /// Where it should be near.
         to: Point,
-    ) -> Value = |_, of, to| match of {
+    ) -> Value = |cx, of, to| match of {
         ThingsOrCurve::Curve(chain) => Ok(Value::point(chain.closest(to.0).1)),
         ThingsOrCurve::Things(values) => {
             let mut best: Option<(f64, Value)> = None;
@@ -98,7 +97,7 @@ builtins! {
                 let distance = match &value {
                     Value::Node(p) | Value::Vector(p, _) => p.distance(to.0),
                     Value::Curve(chain) => chain.closest(to.0).2,
-                    Value::Surface(surface) => Nearest::new(surface).at(to.0).distance,
+                    Value::Surface(surface) => cx.machine.feet.of(surface).at(to.0).distance,
                     _ => continue,
                 };
                 if best.as_ref().is_none_or(|(least, _)| distance < *least) {
