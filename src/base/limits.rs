@@ -38,7 +38,7 @@ limits! {
     /// Steps of a mesh along one part of a border between two corners.
     pub const MESH_STEPS: u32 = 1_000_000;
     /// Work of one mesh or one of its free faces, in evaluations of curves and surfaces, beside that of its elements.
-    pub const MESH_WORK: u64 = 10_000_000;
+    pub const MESH_WORK: u64 = 100_000_000;
     /// The same for each element of the mesh.
     pub const WORK_OF_AN_ELEMENT: u64 = 300;
     /// Work of the network or of the surface model, in evaluations of curves and surfaces, beside that of its parts.
@@ -48,11 +48,11 @@ limits! {
     /// The same for each surface of the model.
     pub const WORK_OF_A_SURFACE: u64 = 200_000;
     /// Work of the areas, volumes and boxes of a report, in evaluations of curves and surfaces, beside that of its surfaces.
-    pub const REPORT_WORK: u64 = 10_000_000;
+    pub const REPORT_WORK: u64 = 50_000_000;
     /// Work of one output or picture, in evaluations of curves and surfaces.
     pub const FILE_WORK: u64 = 100_000_000;
     /// Work of one call, in evaluations of curves and surfaces.
-    pub const CALL_WORK: u64 = 16_000_000;
+    pub const CALL_WORK: u64 = 100_000_000;
     /// Places of the parts of one STEP file.
     pub const PART_INSTANCES: usize = 100_000;
     /// Control points and pieces of borders that the placed parts of one STEP file may have, beside 4 for each byte.
