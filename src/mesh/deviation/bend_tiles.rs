@@ -41,7 +41,16 @@ impl BendTiles {
     }
 
     /// Second derivatives along a unit vector over a box in the rectangle; `None` where they are not bounded, or the box is large.
-    pub fn bends(&self, (low, high): (DVec2, DVec2), along: DVec3) -> Option<Bends> {
+    pub fn bends(&self, area: (DVec2, DVec2), along: DVec3) -> Option<Bends> {
+        Some(along_normal(&self.over(area)?, along))
+    }
+
+    /// How long second derivatives may be over a box in the rectangle; `None` where they are not bounded, or the box is large.
+    pub fn lengths(&self, area: (DVec2, DVec2)) -> Option<Bends> {
+        Some(Bends { mid: [0.0; 3], slack: self.over(area)?.map(|range| range.reach()), jump: 0.0 })
+    }
+
+    fn over(&self, (low, high): (DVec2, DVec2)) -> Option<[Interval3; 3]> {
         let place = |at: DVec2| ((at - self.low) * self.rate).floor().clamp(DVec2::ZERO, DVec2::splat((self.size - 1) as f64));
         let (first, last) = (place(low), place(high));
         let count = last - first + DVec2::ONE;
@@ -55,7 +64,7 @@ impl BendTiles {
                 whole = Some(whole.map_or(own, |w| std::array::from_fn(|k| w[k].union(own[k]))));
             }
         }
-        Some(along_normal(&whole?, along))
+        whole
     }
 }
 

@@ -231,7 +231,7 @@ impl FaceFit<'_> {
     /// Without limits on bends: nodes nearer to each other until no side is too long.
     fn even(&self, field: &mut GradedSize, job: &Job) -> Outcome<Triangulation> {
         let allowed = Cell::new(0);
-        let folds = FoldCheck { fit: self, allowed: &allowed };
+        let folds = FoldCheck::new(self, &allowed);
         let mut has_folds = false;
         for _ in 0..FIT.max_rounds {
             let same = UniformSize(field.spacing * self.face.size.0);
