@@ -9,9 +9,9 @@ use crate::base::tolerance::SINGULAR;
 use crate::base::{par, work};
 use crate::mesh::border::touch::Kind;
 use crate::mesh::verify::contacts::ContactSearch;
-use crate::surface::Closest;
 use crate::surface::faults::CrossingFault;
 use crate::surface::intersect::with_surfaces::with_surfaces;
+use crate::surface::{Closest, Surface};
 
 /// Bounds of the search for a common point of two faces whose elements cross.
 struct CrossingSettings {
@@ -133,7 +133,10 @@ impl ContactSearch<'_> {
         // What bends between its nodes may cross where no element does.
         uncrossed.retain(|(a, b)| !scan.are_neighbours(*a, *b) && scan.leaves[*a].near(&scan.leaves[*b]));
         let surface = |face: usize| &scan.input.model.surfaces[scan.surface_of(face).index()].surface;
-        let mut pairs: Vec<(usize, usize)> = uncrossed.into_iter().filter(|(a, b)| !self.touches.contains_key(&scan.key(*a, *b))).collect();
+        // Parts cut from one surface lie on each other or do not meet, which their elements tell.
+        let of_one = |a: &Surface, b: &Surface| a.part_of().iter().any(|whole| b.part_of().iter().any(|other| whole.is(other)));
+        let is_open = |(a, b): &(usize, usize)| !self.touches.contains_key(&scan.key(*a, *b)) && !of_one(surface(*a), surface(*b));
+        let mut pairs: Vec<(usize, usize)> = uncrossed.into_iter().filter(is_open).collect();
         pairs.dedup_by_key(|(a, b)| (scan.surface_of(*a), scan.surface_of(*b)));
         // Walls of a thin shell: as many pairs as faces, each intersected.
         if let Some(budget) = work::budget() {
