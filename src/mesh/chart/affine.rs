@@ -3,6 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::base::tolerance::{EPSILON, WHOLE_NUMBER};
+use crate::mesh::chart::outline::Outline;
 use crate::mesh::chart::parametric_surface::{LocalExpansion, ParametricSurface, Spot};
 use crate::surface::core::evaluator::PreparedSurface;
 use crate::surface::{Domain, Evaluator, Jet2, Surface};
@@ -53,6 +54,15 @@ impl Chart {
     pub fn uv(&self, xy: DVec2) -> (f64, f64) {
         let v = xy.y * self.by.1;
         ((xy.x - self.b * v) * self.by.0, v)
+    }
+
+    /// How many breaks of the surface, at which it is less than analytic, lie inside the box of an outline along u, and along v.
+    pub fn breaks(&self, outline: &Outline) -> [usize; 2] {
+        let places = outline.xy.iter().map(|xy| DVec2::from(self.uv(*xy)));
+        let (low, high) = places.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
+        let (us, vs) = self.surface().breaks();
+        let inside = |lines: Vec<f64>, low: f64, high: f64| lines.into_iter().filter(|x| low < *x && *x < high).count();
+        [inside(us, low.x, high.x), inside(vs, low.y, high.y)]
     }
 
     /// The surface.

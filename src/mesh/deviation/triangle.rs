@@ -11,6 +11,7 @@ use crate::base::range::Interval3;
 use crate::base::tolerance::NUDGE;
 use crate::mesh::deviation::bend_bounds::{bends_over, beside_kinks};
 use crate::mesh::deviation::heights::{Heights, Plane};
+use crate::mesh::deviation::point_triangle;
 use crate::mesh::deviation::poles;
 use crate::mesh::deviation::quadratic::{over_corners, over_sides};
 use crate::surface::core::power_form::Bends;
@@ -22,13 +23,16 @@ struct TriangleSettings {
     widening: f64,
     /// How often a triangle is cut into [`Heights::PARTS`]² parts where the bound over the whole of it is not enough.
     max_divisions: u32,
+    /// How often a triangle that stands on edge is cut into four.
+    max_parts: u32,
     /// A bound that is larger than this times the distance wanted is not refined by parts, where derivatives cost hundreds of evaluations.
     max_excess: f64,
     /// Width in (u, v) from which a triangle goes round a tip.
     min_width_round_tip: f64,
 }
 
-const SETTINGS: TriangleSettings = TriangleSettings { widening: 0.05, max_divisions: 2, max_excess: 8.0, min_width_round_tip: 0.03 };
+const SETTINGS: TriangleSettings =
+    TriangleSettings { widening: 0.05, max_divisions: 2, max_parts: 8, max_excess: 8.0, min_width_round_tip: 0.03 };
 
 /// Largest distance of a triangle from the surface, by the places and points of its corners; infinite where the surface
 /// has no bounded second derivative.
@@ -117,6 +121,52 @@ pub fn in_any_direction(surface: &Surface, uv: [DVec2; 3]) -> f64 {
         return f64::INFINITY;
     }
     over_sides(&Bends { mid: [0.0; 3], slack: all.map(|r| r.reach()), jump: 0.0 }, uv, high - low)
+}
+
+/// How far the surface over a triangle of (u, v) may be from the triangle, whichever way it leaves it. The search ends with the first distance
+/// above `wanted`.
+///
+/// A triangle that stands on edge may keep the surface near its plane and its sides near the surface, and yet lie beside a peak: its normal
+/// does not tell. Over a part of (u, v) the surface is at most as far from the triangle as its corners are, by the distance from a convex
+/// set, and further by what it bends over the part.
+pub fn beyond(evaluator: Evaluator, uv: [DVec2; 3], p: [DVec3; 3], wanted: f64) -> f64 {
+    let off = |at: DVec2| point_triangle::distance(p, evaluator.point(at.x, at.y));
+    let mut worst = 0.0_f64;
+    let mut open = vec![(uv, [0.0; 3], SETTINGS.max_parts)];
+    while let Some((uv, corners, left)) = open.pop() {
+        let far = corners.into_iter().fold(0.0, f64::max);
+        let area = (uv[0].min(uv[1]).min(uv[2]), uv[0].max(uv[1]).max(uv[2]));
+        let bends = lengths_over(evaluator, area);
+        let bound = far + bends.map_or(f64::INFINITY, |bends| over_sides(&bends, uv, area.1 - area.0));
+        if far > wanted || bound > wanted && left == 0 {
+            return bound;
+        }
+        if bound <= wanted {
+            worst = worst.max(bound);
+            continue;
+        }
+        let [a, b, c] = uv;
+        let middles = [0.5 * (b + c), 0.5 * (c + a), 0.5 * (a + b)];
+        let own = middles.map(off);
+        let [x, y, z] = middles;
+        open.push((middles, own, left - 1));
+        open.push(([a, z, y], [corners[0], own[2], own[1]], left - 1));
+        open.push(([z, b, x], [own[2], corners[1], own[0]], left - 1));
+        open.push(([y, x, c], [own[1], own[0], corners[2]], left - 1));
+    }
+    worst
+}
+
+/// How long second derivatives may be over a box; `None` where they are not bounded.
+fn lengths_over(evaluator: Evaluator, area: (DVec2, DVec2)) -> Option<Bends> {
+    let both = |x: f64, y: f64| (x * x + y * y).sqrt();
+    let mut whole = Bends { mid: [0.0; 3], slack: [0.0; 3], jump: 0.0 };
+    for axis in DVec3::AXES {
+        let along = bends_over(evaluator, area, axis)?;
+        (0..3).for_each(|k| whole.slack[k] = both(whole.slack[k], along.mid[k].abs() + along.slack[k]));
+        whole.jump = both(whole.jump, along.jump);
+    }
+    Some(whole)
 }
 
 /// The width of the box of a triangle.

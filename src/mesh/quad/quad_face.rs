@@ -112,6 +112,6 @@ impl FaceFit<'_> {
         let size = self.face.size.0 * square_spacing(self.face_input.input, self.face);
         let wanted =
             |xy: DVec2| (NET_FIT.square_side * edge_length::wanted(&self.chart.jet(xy), self.limits.chord, self.limits.angle)).min(size);
-        Background::new(self.chart, whole, 1.0 + self.face_input.input.plan.slope(), &wanted)
+        Background::new(self.chart, whole, 1.0 + self.face_input.input.plan.slope(), [0; 2], &wanted)
     }
 }

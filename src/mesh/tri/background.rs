@@ -27,12 +27,14 @@ pub struct Background {
 impl Background {
     /// A grid over a box of the chart with the length `of` each place; `growth` is the largest ratio of neighbouring edges.
     ///
-    /// The distance of grid lines follows from the mean length, which a first, coarse grid has. Between lines whose lengths differ, or between
+    /// The distance of grid lines follows from the mean length, which a first, coarse grid has, and from the `breaks` of the surface along x and
+    /// y: a bump may be as narrow as they are near to each other. Between lines whose lengths differ, or between
     /// which the surface turns, as at a sharp nose or fold, lines are added until they are as near to each other as the lengths there demand.
     pub fn new(
         chart_surface: &dyn ParametricSurface,
         (low, high): (DVec2, DVec2),
         growth: f64,
+        breaks: [usize; 2],
         of: &(impl Fn(DVec2) -> f64 + Sync),
     ) -> Self {
         let extent = (high - low).max(DVec2::splat(f64::MIN_POSITIVE));
@@ -45,11 +47,12 @@ impl Background {
             (spot.p, (normal, of(xy)))
         };
         let even = |most: usize| {
-            let lines = |from: f64, x: f64| {
-                let n = ((most as f64 * x / extent.max_element()).ceil() as usize).clamp(4, most);
+            let lines = |from: f64, x: f64, breaks: usize| {
+                let by_breaks = if breaks > BACKGROUND.many_breaks { breaks.min(BACKGROUND.max_lines_by_breaks) } else { 0 };
+                let n = ((most as f64 * x / extent.max_element()).ceil() as usize).clamp(4, most).max(by_breaks);
                 Lines::new((0..=n).map(|k| from + x * (k as f64 / n as f64)).collect())
             };
-            Self::with_lines((lines(low.x, extent.x), lines(low.y, extent.y)), growth, &node)
+            Self::with_lines((lines(low.x, extent.x, breaks[0]), lines(low.y, extent.y, breaks[1])), growth, &node)
         };
         let mut field = even(BACKGROUND.first_lines);
         let mut level = field.clone();

@@ -227,10 +227,19 @@ fn ratio_with_sides(chart: &Chart, triangulation: &Triangulation, t: u32, limits
     let found = ratio(chart, triangulation, corners, None, limits);
     let Some(limit) = limits.chord.filter(|_| found.chord > 0.0 && found.chord <= 1.0) else { return found };
     let triangle = ChartTriangle::of(triangulation, corners);
-    if found.chord <= tilt(chart, triangle) {
+    let cosine = tilt(chart, triangle);
+    if found.chord <= cosine {
         return found;
     }
     let ChartTriangle { xy, p } = triangle;
+    if cosine < MIN_TILT_COSINE {
+        let (first, second) = under(&|at| chart.tangents(at.into()), xy.map(|xy| DVec2::from(chart.uv(xy))));
+        let off = |uv| triangle::beyond(chart.evaluator(), uv, p, limit);
+        let beyond = off(first).max(second.map_or(0.0, off)) / limit;
+        if beyond > 1.0 {
+            return LimitRatios { chord: beyond, ..found };
+        }
+    }
     let mut ends = poles::sides(&|at| chart.tangents(at.into()), xy.map(|xy| DVec2::from(chart.uv(xy)))).map(Some);
     // Borders keep the limit by themselves.
     let locked = triangulation.locked.get(t as usize).map_or(0, |bits| *bits);

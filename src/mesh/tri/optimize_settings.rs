@@ -45,11 +45,13 @@ pub(crate) const TREE_FACE: OptimizeSettings =
 pub(crate) struct FitSettings {
     /// Factor on lengths that are lowered, beside the one that the limit demands.
     pub(crate) size_factor: f64,
+    /// Least length that is lowered, over the longest side of the triangle because of which it is.
+    pub(crate) least_over_side: f64,
     /// Largest number of triangulations of a face.
     pub(crate) max_rounds: usize,
 }
 
-pub(crate) const FIT: FitSettings = FitSettings { size_factor: 0.96, max_rounds: 12 };
+pub(crate) const FIT: FitSettings = FitSettings { size_factor: 0.96, least_over_side: 0.5, max_rounds: 12 };
 
 /// Repair of bad triangles (`optimize.rs`, `optimize/repair.rs`).
 pub(crate) struct RepairSettings {

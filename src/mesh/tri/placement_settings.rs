@@ -185,6 +185,9 @@ pub(crate) struct BackgroundSettings {
     pub(crate) first_lines: usize,
     /// Largest number of lines along the longer side.
     pub(crate) max_lines: usize,
+    /// Number of breaks above which there are as many lines, and the largest number of lines for that reason.
+    pub(crate) many_breaks: usize,
+    pub(crate) max_lines_by_breaks: usize,
     /// Distance of lines over the mean wanted length.
     pub(crate) line_spacing: f64,
     /// Ratio of lengths between neighbouring lines from which on lines are added between them.
@@ -210,6 +213,8 @@ pub(crate) struct BackgroundSettings {
 pub(crate) const BACKGROUND: BackgroundSettings = BackgroundSettings {
     first_lines: 12,
     max_lines: 384,
+    many_breaks: 32,
+    max_lines_by_breaks: 96,
     line_spacing: 2.0,
     max_ratio: 1.5,
     min_turn_cosine: 0.866,

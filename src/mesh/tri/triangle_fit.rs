@@ -188,7 +188,7 @@ impl FaceFit<'_> {
             let at = DVec2::from(self.chart.uv(xy));
             poles::at_tip(self.surface, &tangents, at, &wanted).unwrap_or_else(|| wanted(at)).min(size)
         };
-        Background::new(self.chart, whole, 1.0 + self.face_input.input.plan.slope(), &of)
+        Background::new(self.chart, whole, 1.0 + self.face_input.input.plan.slope(), self.chart.breaks(self.outline), &of)
     }
 
     /// Edges of the border that are so short that lengths have to grow from them; nodes are `spacing` times as far apart as
@@ -304,8 +304,10 @@ impl FaceFit<'_> {
                 worst = (over, middle, if ratio.worst() > 1.0 { ratio.limit() } else { MeshLimit::Size });
             }
             let smaller = (FIT.size_factor / factor).max(0.5);
+            // Lengths that were lowered at single nodes, to divide triangles there, are no lengths of a whole cell of the grid.
+            let least = FIT.least_over_side * longest_side(triangulation, t as u32);
             if let Some(background) = &mut field.background {
-                c.iter().for_each(|n| background.lower(triangulation.xy[*n], triangulation.size[*n] * smaller));
+                c.iter().for_each(|n| background.lower(triangulation.xy[*n], triangulation.size[*n].max(least) * smaller));
             }
         }
         Ok(worst)
