@@ -17,7 +17,7 @@ use std::mem::discriminant;
 use glam::DVec3;
 
 pub use edit::Edit;
-pub use values::{LengthRange, ValueFault};
+pub use values::{EdgePlace, LengthRange, ValueFault};
 
 use super::origin::Origin;
 

@@ -40,6 +40,14 @@ pub fn typed(say: &dyn Say, length: f64) -> String {
     if number.parse::<f64>().is_ok_and(|shown| shown == 0.0) { format!("{length:?}") } else { format!("{number}{unit}") }
 }
 
+/// A point as it is typed, from the words of a message: the unit sticks to each coordinate that is not 0.
+pub fn typed_point(said: &str) -> String {
+    let (inside, unit) = said.rsplit_once(") ").unwrap_or((said.trim_end_matches(')'), ""));
+    let one = |x: &str| if x == "0" { x.to_owned() } else { format!("{x}{unit}") };
+    let all: Vec<String> = inside.trim_start_matches('(').split(", ").map(one).collect();
+    format!("({})", all.join(", "))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -51,5 +59,11 @@ mod tests {
             assert!(round_above(length) > length && round_above(up) > up);
             assert!((round_down(length) / down - 1.0).abs() < 1e-12, "{length} down to {}", round_down(length));
         }
+    }
+
+    #[test]
+    fn points_are_typed_with_their_unit() {
+        assert_eq!(typed_point("(0, -2.5, 50) mm"), "(0, -2.5mm, 50mm)");
+        assert_eq!(typed_point("(0, 1e-7, 50)"), "(0, 1e-7, 50)");
     }
 }

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::quantities::{typed, typed_point};
 use super::{Describe, Edit, Report, Say, Subject, codes};
 use crate::base::math;
 use crate::base::origin::Origin;
@@ -76,10 +77,10 @@ pub enum ValueFault {
     },
     /// E215: none or several edges lie where one is asked for.
     NotOneEdge {
-        /// The surface.
+        /// The surface or shell; none for a list.
         of: Origin,
-        /// Middles of the edges that lie there.
-        places: Vec<DVec3>,
+        /// The edges that lie there.
+        found: Vec<EdgePlace>,
     },
     /// W728: a list without members where things are selected.
     NothingSelected {
@@ -236,6 +237,46 @@ impl Describe for ValueFault {
     }
 
     fn describe(&self, say: &dyn Say) -> Report {
+/// An edge among several that lie at one place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EdgePlace {
+    /// Its middle.
+    pub middle: DVec3,
+    /// The curve that it lies on; none where that has no name of its own.
+    pub curve: Origin,
+    /// The surfaces on it, each once.
+    pub faces: Vec<Origin>,
+}
+
+/// E215 of edges: where each of several is, and what chooses one.
+fn not_one_edge(say: &dyn Say, of: Origin, found: &[EdgePlace]) -> Report {
+    let whole = say.quoted(of, "these faces");
+    let message = match found.len() {
+        0 => format!("no edge of {whole} lies there"),
+        n => format!("{n} edges of {whole} lie there"),
+    };
+    let report = Report::new(message).label(Subject::Call, "asked for here");
+    let shown = &found[..found.len().min(EDGES_SHOWN)];
+    let middles: Vec<DVec3> = shown.iter().map(|edge| edge.middle).collect();
+    let middles = say.points(&middles);
+    let described = shown.iter().zip(&middles).map(|(edge, middle)| {
+        let names: Vec<String> = edge.faces.iter().map(|face| say.quoted(*face, "a face")).collect();
+        let on = if edge.curve.is_some() { format!(", on {}", say.quoted(edge.curve, "a curve")) } else { String::new() };
+        let between = match names.as_slice() {
+            _ if edge.faces == [of] => String::new(),
+            [] => String::new(),
+            [one] => format!(", a free edge of {one}"),
+            [first, rest @ ..] => format!(", between {first}{}", rest.iter().map(|name| format!(" and {name}")).collect::<String>()),
+        };
+        format!("one has its middle at {middle}{on}{between}")
+    });
+    let report = described.fold(report, Report::note);
+    let is_name = |name: &String| !name.is_empty() && name.chars().all(|c| c.is_alphanumeric() || "_.[]".contains(c));
+    let name = shown.iter().map(|edge| say.name(edge.curve)).find(is_name);
+    let Some(key) = name.or_else(|| middles.first().map(|middle| typed_point(middle))) else { return report };
+    report.help(format!("a curve or a point that lies on one of them alone: `edge({key})`")).edit(Subject::Argument("on"), Edit::Put(key))
+}
+
         match self {
             Self::OutsideRange { argument, found, range } => outside(argument, found.clone(), range),
             Self::LengthOutside { argument, found, range } => outside(argument, say.length(*found), &range.words(say)),
@@ -258,16 +299,7 @@ impl Describe for ValueFault {
                 report.help("bind it with `curve`: then it joins the network")
             }
             Self::NoFaces { mesh } => Report::new(format!("`{mesh}` has no faces on surfaces")).label(Subject::Call, "asked for here"),
-            Self::NotOneEdge { of, places } => {
-                let surface = say.quoted(*of, "this surface");
-                let message = match places.len() {
-                    0 => format!("no edge of {surface} lies there"),
-                    n => format!("{n} edges of {surface} lie there"),
-                };
-                let report = Report::new(message).label(Subject::Call, "asked for here");
-                let shown = &places[..places.len().min(EDGES_SHOWN)];
-                say.points(shown).iter().fold(report, |r, p| r.note(format!("one has its middle at {p}")))
-            }
+            Self::NotOneEdge { of, found } => not_one_edge(say, *of, found),
             Self::NothingSelected { of, keyword } => Report::new(format!("this selects nothing for the {keyword}"))
                 .at(*of, "an empty list")
                 .help("`report` what it selects from, or remove it"),

@@ -155,12 +155,12 @@ pub fn by_length(cx: &mut Cx, edges: Vec<Value>, wanted: impl Fn(f64) -> bool) -
     chosen(cx, edges, |edge| Ok(wanted(edge.track.length())))
 }
 
-/// Whether an edge lies on a curve, or a point on it.
+/// Whether an edge lies on a curve, or a point on it: on any of the borders that are glued there.
 pub fn lies(cx: &mut Cx, scene: &Scene, edge: &SharedEdge, key: &EdgeKey) -> Result<bool, Halt> {
     let tolerance = cx.tolerance()?;
     let Some(track) = scene.model.shared_track(edge, &scene.network) else { return Ok(false) };
     match key {
         EdgeKey::Curve(chain) => Geometry { scene, edge, track, tolerance }.lies_on(&Feet::Curve(chain.clone())),
-        EdgeKey::Point(p) => Ok(track.distance(*p) <= tolerance.point),
+        EdgeKey::Point(p) => Ok(track.distance(*p) <= tolerance.point.max(edge.near)),
     }
 }

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use crate::base::origin::Origin;
 use crate::lang::values::conversions::{FromValue, IntoValue, Point};
 use crate::lang::values::types::Ty;
 use crate::lang::values::value::{EntityHome, MeshValue, ModuleId, Plane, ShellValue, Value};
@@ -189,6 +190,15 @@ impl Faces {
             _ => Vec::new(),
         };
         self.0.iter().flat_map(of).collect()
+    }
+
+    /// The surface or shell that they are of; none of several.
+    pub fn origin(&self) -> Origin {
+        match self.0.as_slice() {
+            [Value::Surface(s)] => s.origin(),
+            [Value::Shell(s)] => s.origin,
+            _ => Origin::NONE,
+        }
     }
 
     /// Whether a shell is among them.

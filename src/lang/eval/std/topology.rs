@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use crate::base::bbox::Box3;
-use crate::base::fault::ValueFault;
+use crate::base::fault::{EdgePlace, ValueFault};
 use crate::base::origin::Origin;
 use crate::builtins;
 use crate::lang::eval::context::Cx;
@@ -17,7 +17,7 @@ use crate::lang::eval::std::surfaces::checked_uv;
 use crate::lang::values::conversions::{Angle, Direction, Length};
 use crate::lang::values::value::{EntityHome, Value};
 use crate::model::contact::Turn;
-use crate::model::{EdgeId, Model, PatchId, SharedEdges, SurfaceId};
+use crate::model::{EdgeCurve, EdgeId, Model, PatchId, SharedEdge, SharedEdges, SurfaceId};
 use crate::network::Chain;
 use crate::surface::{IsoLine, Surface, SurfaceKind};
 
@@ -108,28 +108,68 @@ pub(crate) fn middle(cx: &mut Cx, edge: &EdgeOf) -> Result<DVec3, Halt> {
     Ok(track.point(0.5 * track.length()))
 }
 
-/// The one edge of some surfaces that lies on a curve or at a point.
-fn edge_of(cx: &mut Cx, surfaces: &[Surface], key: &EdgeKey) -> Result<EdgeOf, Halt> {
-    let (home, model, patches) = patches(cx, surfaces)?;
+/// The one edge of some faces that lies on a curve or at a point: of one surface as the model has it, of several as their faces are glued.
+/// Edges of one surface that are glued to each other are one too.
+fn edge_of(cx: &mut Cx, faces: &Faces, key: &EdgeKey) -> Result<EdgeOf, Halt> {
+    let surfaces = faces.surfaces();
+    let alone = surfaces.len() == 1 && !faces.has_shell();
+    let (home, model, patches) = patches(cx, &surfaces)?;
     let scene = Scene { model: model.clone(), network: cx.network_of(&home)? };
-    let mut found: Vec<EdgeId> = Vec::new();
-    for edge in model.edges_of(&patches) {
-        if choosing::lies(cx, &scene, &model.whole_edge(edge), key)? {
-            found.push(edge);
+    let mut found: Vec<EdgeOf> = Vec::new();
+    if alone {
+        let mut own: Vec<EdgeId> = Vec::new();
+        for edge in model.edges_of(&patches) {
+            if choosing::lies(cx, &scene, &model.whole_edge(edge), key)? {
+                own.push(edge);
+            }
+        }
+        let swept: Vec<EdgeId> = match key {
+            EdgeKey::Point(_) => own.iter().copied().filter(|edge| is_swept(&model, &patches, *edge)).collect(),
+            EdgeKey::Curve(_) => Vec::new(),
+        };
+        if let ([one], _) | (_, [one]) = (own.as_slice(), swept.as_slice()) {
+            return Ok(whole(&home, &model, *one));
+        }
+        found = own.into_iter().map(|edge| whole(&home, &model, edge)).collect();
+    }
+    if !alone || found.len() > 1 {
+        let (glued, _) = skin(cx, faces)?;
+        let mut shared = Vec::new();
+        for edge in glued {
+            if choosing::lies(cx, &scene, &edge.1, key)? {
+                shared.push(edge);
+            }
+        }
+        if let [one] = shared.as_slice() {
+            return Ok(one.clone());
+        }
+        if !alone {
+            found = shared;
         }
     }
-    let swept: Vec<EdgeId> = match key {
-        EdgeKey::Point(_) => found.iter().copied().filter(|edge| is_swept(&model, &patches, *edge)).collect(),
-        EdgeKey::Curve(_) => Vec::new(),
+    let of = if alone { surfaces.first().map_or(Origin::NONE, Surface::origin) } else { faces.origin() };
+    let found = found.iter().map(|edge| edge_place(&scene, &edge.1)).collect();
+    Err(ValueFault::NotOneEdge { of, found }.into())
+}
+
+/// Where an edge lies, for whoever must choose among several.
+fn edge_place(scene: &Scene, edge: &SharedEdge) -> EdgePlace {
+    let (model, network) = (&scene.model, &scene.network);
+    let middle = model.shared_track(edge, network).map_or(DVec3::ZERO, |track| track.point(0.5 * track.length()));
+    let mut faces: Vec<Origin> = Vec::new();
+    for patch in &edge.faces {
+        let surface = model.patches[patch.index()].surface;
+        let origin = model.surfaces[surface.index()].surface.origin();
+        if !faces.contains(&origin) {
+            faces.push(origin);
+        }
+    }
+    let curve = edge.first().map(|part| &model.edges[part.edge.index()].curve);
+    let curve = match curve {
+        Some(EdgeCurve::Links { links, .. }) => links.first().map(|(link, _)| network.links[link.index()].curve),
+        _ => None,
     };
-    match (found.as_slice(), swept.as_slice()) {
-        ([one], _) | (_, [one]) => Ok(whole(&home, &model, *one)),
-        _ => {
-            let of = surfaces.first().map_or(Origin::NONE, Surface::origin);
-            let places = found.iter().map(|e| model.track(*e, &scene.network).point(0.5 * model.edges[e.index()].length)).collect();
-            Err(ValueFault::NotOneEdge { of, places }.into())
-        }
-    }
+    EdgePlace { middle, curve: curve.map_or(Origin::NONE, |curve| network.curves[curve.index()].curve.origin()), faces }
 }
 
 /// Whether an edge is the way of one point of a profile that was moved or turned: v stands still along it.
@@ -163,21 +203,25 @@ fn iso_line(cx: &mut Cx, of: &Surface, at: IsoLine, argument: &'static str) -> R
 }
 
 builtins! {
-    /// The edge of a surface that lies along a curve, or on which a point lies.
+    /// The edge of faces that lies along a curve, or on which a point lies.
     ///
-    /// Of the edges of an extruded or turned surface that meet in a point it is the one that this point of the profile sweeps.
+    /// Of the edges of one extruded or turned surface that meet in a point it is the one that this point of the profile sweeps.
+    /// Of a shell or of several surfaces it is an edge as they are glued: a border that two faces share is one edge.
+    /// Where several edges lie, the error (E215) says where each has its middle and which faces are on it.
     /// ```loft
     /// curve south = line((0, 0, 0), (4m, 0, 0))
     /// surface wall = extrude(south, by: (0, 0, 3m))
+    /// surface slab = extrude(south, by: (0, 2m, 0))
     /// let foot = wall.edge(south).length // => 4000mm
     /// let post = wall.edge(south.end).length // => 3000mm
+    /// let corner = [wall, slab].edge((2m, 0, 0)).angle // => 90deg
     /// ```
     fn edge(
-        /// A surface.
-        of: Surface,
+        /// A surface, a shell, or several.
+        of: Edged,
         /// A curve it lies on, or a point of it.
         on: EdgeKey,
-    ) -> EdgeOf = |cx, of, on| edge_of(cx, &[of], &on);
+    ) -> EdgeOf = |cx, of, on| edge_of(cx, &of.0, &on);
 
     /// Edges at which the faces of surfaces or shells turn by more than an angle.
     ///
