@@ -61,6 +61,17 @@ impl BlendMethod {
             Self::Gordon => Rule::Spline,
         }
     }
+
+    /// The rule across curves that run from pole to pole with none across them: cubics between neighbours would take the derivatives across
+    /// them from crossing curves, and those are points here, so all would be 0. Two curves are ruled, more are joined by splines.
+    fn rule_of_meridians(self, nodes: usize, closed: bool) -> Rule {
+        match self.rule(nodes == 2, closed) {
+            Rule::Cubic if nodes == 2 => Rule::Linear,
+            Rule::Cubic if closed => Rule::Periodic,
+            Rule::Cubic => Rule::Spline,
+            rule => rule,
+        }
+    }
 }
 
 /// Settings of [`build`].
@@ -125,7 +136,12 @@ pub(super) fn gridded(grid: &Grid, settings: &CoonsSettings, tolerance: &Toleran
     };
     let nodes_v = averages(&along_v, grid, &flow.along_u, tolerance)?;
     let one_cell = 2 == nodes_u.len() && nodes_v.len() == 2;
-    let rules = (settings.method.rule(one_cell, flow.closed_u), settings.method.rule(one_cell, flow.closed_v));
+    let rules = if along_u.is_empty() && ends_v == (true, true) {
+        let rule = settings.method.rule_of_meridians(nodes_u.len(), flow.closed_u);
+        (rule, if rule == Rule::Periodic { Rule::Spline } else { rule })
+    } else {
+        (settings.method.rule(one_cell, flow.closed_u), settings.method.rule(one_cell, flow.closed_v))
+    };
 
     let rails = |curves: &[Prepared], nodes: &[f64], closed: bool| -> Vec<Rail> {
         curves.iter().map(|c| Rail::new(c.chain.clone(), Map::new(nodes.to_vec(), c.raw.clone(), settings.reparam, closed))).collect()

@@ -151,7 +151,7 @@ builtins! {
     /// Curves come in any order and direction: what they span is found from the nodes they share. The surface
     /// contains every curve. The first curve written runs along u. Inside one loop curves are blended linearly (four
     /// straight lines give the hyperbolic paraboloid); where inner curves make several cells the blend is cubic, and
-    /// the surface is C1 across them.
+    /// the surface is C1 across them. Three curves or more from pole to pole that none crosses are joined by C2 splines.
     /// ```loft
     /// curve south = line((0, 0, 0), (4m, 0, 0))
     /// curve north = arc((0, 3m, 0), (4m, 3m, 0), through: (2m, 3m, 1m))
@@ -188,6 +188,8 @@ builtins! {
     ///
     /// Curves come in any order and direction, as `coons` takes them, and the surface contains every curve. Across a curve each cell has the
     /// derivatives that the crossing curves have at the nodes, so nets are C1 across their curves whatever the widths of the cells.
+    /// Curves from pole to pole that none crosses have no such derivatives: two are ruled, more are joined by C2 splines, and `twist` other
+    /// than `zero` gives derivatives across them that are cubics along them.
     /// Three curves are a triangle: one corner is the pole, to which a side shrinks. `twist: similar` takes much of the flatness
     /// about corners away: of the octant of a sphere below it leaves 0.44 % of the radius, `zero` 4.2 % and `adini` 4.9 %.
     /// ```loft
