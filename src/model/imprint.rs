@@ -12,7 +12,9 @@ use crate::base::origin::Origin;
 use crate::base::par;
 use crate::base::tolerance::Tolerance;
 use crate::network::{Chain, Network, meet};
+use crate::surface::intersect::with_curve::with_curve;
 use crate::surface::intersect::with_surfaces::with_surfaces;
+use crate::surface::{Nearest, Surface, with_loops};
 
 /// Curves and points that faces have in common beside the edges that they share.
 #[derive(Clone, Debug, Default)]
@@ -61,7 +63,49 @@ pub(super) fn beside(curve: &Chain, others: &[Chain], tolerance: &Tolerance) -> 
     Ok(left)
 }
 
+/// Samples of a curve one of which is on a surface that some of it lies on.
+const SAMPLES: u32 = 64;
+
+/// Arc-length fractions between which a curve lies on a surface, ascending.
+///
+/// Fails with E413 when the work exceeds its limit.
+pub fn runs_on(curve: &Chain, surface: &Surface, tolerance: &Tolerance) -> Result<Vec<(f64, f64)>> {
+    if !curve.bbox().touches(&surface.hull(), tolerance.point) {
+        return Ok(Vec::new());
+    }
+    let nearest = Nearest::new(surface);
+    let on = |k: u32| nearest.at(curve.point(f64::from(k) / f64::from(SAMPLES))).distance <= tolerance.point;
+    if !(0..=SAMPLES).any(on) {
+        return Ok(Vec::new());
+    }
+    let found = with_curve(curve, &[with_loops(surface, tolerance)?], tolerance)?;
+    Ok(found.into_iter().filter_map(|m| m.overlap_end.map(|to| (m.f.min(to), m.f.max(to)))).collect())
+}
+
 impl Model {
+    /// Points in which curves leave the faces that they lie on, or come to lie on them, and in which they cross each other.
+    ///
+    /// Fails with E413 when the work exceeds its limit.
+    pub fn run_ends(&self, curves: &[&Chain], listed: &[SurfaceId], tolerance: &Tolerance, job: &Job) -> Result<Vec<DVec3>> {
+        let pairs: Vec<(&Chain, SurfaceId)> = curves.iter().flat_map(|curve| listed.iter().map(|s| (*curve, *s))).collect();
+        let found = par::try_map(pairs.len(), |k| {
+            job.go_on()?;
+            let (curve, surface) = pairs[k];
+            let end = tolerance.point / curve.length();
+            let runs = runs_on(curve, &self.surfaces[surface.index()].surface, tolerance)?;
+            let inside = runs.into_iter().flat_map(|(from, to)| [from, to]).filter(|f| *f > end && *f < 1.0 - end);
+            Ok::<Vec<DVec3>, Fault>(inside.map(|f| curve.point(f)).collect())
+        })?;
+        let mut points: Vec<DVec3> = found.into_iter().flatten().collect();
+        for (k, a) in curves.iter().enumerate() {
+            for b in curves[k + 1..].iter().filter(|b| b.bbox().touches(&a.bbox(), tolerance.point)) {
+                job.go_on()?;
+                points.extend(meet(a, b, tolerance)?.iter().map(|m| m.point));
+            }
+        }
+        Ok(points)
+    }
+
     /// What some surfaces have in common beside the edges that they share; `origin` is given to the curves.
     ///
     /// Fails with E413 when the work exceeds its limit.

@@ -121,7 +121,9 @@ pub fn of(cx: &mut Cx, module: ModuleId, spec: &MeshSpec, sink: &mut Vec<Fault>)
             let mut faces: Vec<SurfaceId> = plan.surfaces.iter().map(|s| s.0).collect();
             faces.sort_unstable();
             faces.dedup();
-            let imprint = scene.model.imprint(&faces, origin, &scene.network, &tolerance, cx.job)?;
+            let mut imprint = scene.model.imprint(&faces, origin, &scene.network, &tolerance, cx.job)?;
+            let curves: Vec<&Chain> = plan.curves.iter().map(|(_, chain)| chain).collect();
+            imprint.points.extend(scene.model.run_ends(&curves, &faces, &tolerance, cx.job)?);
             plan.imprint = Some((imprint, origin));
         }
     } else {

@@ -200,6 +200,7 @@ codes! {
     now "W726", "faces-unusable", "faces of a file could not be used";
     now "W728", "empty-selection", "a selection is empty";
     now "W729", "holds-of-nothing", "a check tests an empty list";
+    now "W730", "curve-leaves-face", "a curve of a mesh leaves the face that it lies on";
     now "E801", "cannot-read", "a file cannot be read";
     now "E802", "outside-folders", "a path leaves the allowed folders";
     now "E803", "malformed-data", "a table or entity is malformed";

@@ -10,11 +10,12 @@ use crate::base::predicates::{Side, point_in_polygon};
 use crate::base::solve::turn;
 use crate::base::tolerance::Tolerance;
 use crate::mesh::border::layout::Layout;
+use crate::mesh::border::loose::{self, Leaving};
 use crate::mesh::request::input::Input;
 use crate::model::{Patch, PatchId, SurfaceId, Track};
 use crate::surface::{Domain, Nearest, Surface, foot_within};
 
-/// Notes for each face the segments and points of the plan that lie inside it, off its borders.
+/// Notes for each face the segments and points of the plan that lie inside it, off its borders, and a curve that shares no nodes with a face.
 pub fn place(input: &Input, layout: &mut Layout) {
     let mut on_face = vec![false; layout.pieces.segments.len()];
     layout.faces.iter().flat_map(|f| &f.sides).flat_map(|s| s.segments()).for_each(|s| on_face[s] = true);
@@ -35,6 +36,7 @@ pub fn place(input: &Input, layout: &mut Layout) {
         return;
     }
     let mut known: BTreeMap<SurfaceId, Nearest> = BTreeMap::new();
+    let mut leaving = Leaving::new(input, layout);
     let mut faces = std::mem::take(&mut layout.faces);
     for face in &mut faces {
         let surface = &input.model.surfaces[face.surface.index()].surface;
@@ -49,8 +51,10 @@ pub fn place(input: &Input, layout: &mut Layout) {
         let rim = if found.is_empty() { Vec::new() } else { rim(layout, &around) };
         // What runs along the border of the face and is none of it has no room beside it.
         let on_rim = |p: &DVec3| rim.iter().any(|part| part.is_near(layout, *p, input.tolerance.point));
-        let own: Vec<usize> = found.into_iter().filter(|n| !probes[*n].iter().all(on_rim)).map(|n| lines[n]).collect();
-        face.lines.extend(own);
+        let own = found.into_iter().filter(|n| !probes[*n].iter().all(on_rim)).map(|n| lines[n]);
+        // What leaves the face between the probes is no line of it.
+        let own = own.filter(|segment| leaving.part(*segment, face.surface, face.near).is_none());
+        face.lines.extend(own.collect::<Vec<usize>>());
         face.lines.sort_unstable();
         face.lines.dedup();
         let segments = &layout.pieces.segments;
@@ -61,6 +65,7 @@ pub fn place(input: &Input, layout: &mut Layout) {
         face.points = points.iter().copied().filter(inside).collect();
     }
     layout.faces = faces;
+    layout.loose = loose::find(input, layout, &mut leaving);
 }
 
 /// A segment of the border of a face, inside a ball.

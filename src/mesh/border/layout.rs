@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use crate::mesh::border::loose::Loose;
 use crate::mesh::border::lost::{self, Lost};
 use crate::mesh::border::tracks::{by_link, curve_part, curve_parts, cut_on_others, edge_part, link_parts, oriented, reach};
 use crate::mesh::border::{creases, inside};
@@ -131,6 +132,8 @@ pub struct Layout {
     pub creases: Vec<(usize, Vec<usize>)>,
     /// What is not in the mesh because it became a point or a line.
     pub lost: Vec<Lost>,
+    /// A curve that shares no nodes with a face that it lies on.
+    pub loose: Option<Loose>,
 }
 
 impl Layout {

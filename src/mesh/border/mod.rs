@@ -8,6 +8,7 @@ pub mod folds;
 pub mod inside;
 pub mod layout;
 pub mod layout_check;
+pub mod loose;
 pub mod lost;
 pub mod nodes;
 pub mod side_parameters;

@@ -116,7 +116,8 @@ impl PlanHasher<'_> {
     }
 
     fn layout(&self, layout: &Layout, to: &mut StableHasher) {
-        let Layout { faces, parts, pieces, edges, of_link, curves, points, creases, meets, lost } = layout;
+        // What is loose follows from the rest.
+        let Layout { faces, parts, pieces, edges, of_link, curves, points, creases, meets, lost, loose: _ } = layout;
         faces.len().hash_into(to);
         faces.iter().for_each(|face| self.face(face, to));
         // The faces determine which edges its tracks are; patches that are not meshed use them too, and then nodes do not slide.

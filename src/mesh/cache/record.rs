@@ -89,6 +89,7 @@ impl Put for Remark {
             Self::Overridden { key, earlier, later } => (1u8, (key, (earlier, later))).put(to),
             Self::Touch(Touch { kind, surfaces, names, length, at }) => (2u8, (kind.word(), (*surfaces, (names, (*length, *at))))).put(to),
             Self::Lost(lost) => (4u8, lost).put(to),
+            Self::Loose(loose) => (5u8, loose).put(to),
             Self::Sharp { angle, at, surface, faces, cure } => (3u8, ((angle, at), (surface, (faces, cure)))).put(to),
         }
     }
@@ -112,6 +113,7 @@ impl Plain for Remark {
                 cure: Plain::take(from)?,
             },
             4 => Self::Lost(Plain::take(from)?),
+            5 => Self::Loose(Plain::take(from)?),
             _ => return None,
         })
     }

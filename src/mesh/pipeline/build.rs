@@ -123,6 +123,9 @@ impl MeshLayouts {
             others.iter().for_each(|part| first.sizing.join(&part.sizing));
             remarks = first.sizing.remarks();
             remarks.extend(first.layout.lost.iter().chain(others.iter().flat_map(|part| &part.layout.lost)).copied().map(Remark::Lost));
+            remarks.extend(
+                first.layout.loose.iter().chain(others.iter().filter_map(|part| part.layout.loose.as_ref())).copied().map(Remark::Loose),
+            );
             let mut leaves = Vec::with_capacity(parts.len());
             // Faces without shared nodes, where the plan says so, touch on purpose.
             for part in parts.iter().filter(|_| input.plan.settings.conforming()) {

@@ -228,7 +228,8 @@ mesh_settings! {
         /// Neighbouring faces share nodes.
         conforming: bool, Takes::Flag, ANY, "true" => true, ["mesh::pipeline::build::build"];
         /// Faces that touch without a shared border share nodes there: edges that lie on a face, and the curves in which faces cross,
-        /// are lines of the faces' meshes. Faces that overlap are E666.
+        /// are lines of the faces' meshes. A curve of the mesh that lies on a face is cut where it leaves it, at a hole too. Faces that
+        /// overlap are E666.
         imprint: bool, Takes::Flag, ANY, "false", ["model::imprint", "mesh::border::layout::Layout::new"];
         /// Reverses the normals of faces. Without it faces that close point outwards; a list of faces that stays open keeps the
         /// normals it was given.

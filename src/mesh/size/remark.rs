@@ -5,6 +5,7 @@ use glam::DVec3;
 
 use crate::base::fault::Fault;
 use crate::base::origin::Origin;
+use crate::mesh::border::loose::Loose;
 use crate::mesh::border::lost::Lost;
 use crate::mesh::border::touch::{Kind, Touch};
 use crate::mesh::request::fault::{Cure, MeshFault};
@@ -35,6 +36,8 @@ pub enum Remark {
     Touch(Touch),
     /// W725: something that became a point or a line.
     Lost(Lost),
+    /// W730: a curve that shares no nodes with a face that it lies on.
+    Loose(Loose),
     /// W724: sharp angles away from sharp corners.
     Sharp {
         /// The least, radians.
@@ -95,6 +98,7 @@ impl Remark {
                 ContactFault::FacesTouch { within: plan.origin, a: surface(*a), b: surface(*b), names, how, at: *at, imprint }.into()
             }
             Self::Lost(lost) => lost.fault(input),
+            Self::Loose(loose) => loose.fault(input),
             Self::Unused { rule, why } => MeshFault::RuleUnused { rule: origin(*rule), why: why.clone() }.into(),
             Self::Overridden { key, earlier, later } => {
                 let key = KEYS.into_iter().find(|k| k == key).unwrap_or("a setting");

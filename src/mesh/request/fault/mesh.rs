@@ -128,12 +128,29 @@ pub enum MeshFault {
         /// How many others there are.
         more: usize,
     },
+    /// W730: a curve that lies on a face along a part of its segments, and shares no nodes with it.
+    Loose {
+        /// The mesh.
+        of: Origin,
+        /// The curve.
+        curve: Origin,
+        /// The surface of the face.
+        surface: Origin,
+        /// Length that lies on the face, model units.
+        length: f64,
+        /// Where it leaves the face first.
+        at: DVec3,
+        /// How many other curves there are.
+        more: usize,
+        /// Whether the mesh is imprinted.
+        imprint: bool,
+    },
 }
 
 impl Describe for MeshFault {
     codes! {
         RuleUnused "W701", RuleOverridden "W706", TooMany "E217", TooMuchWork "E217", TooManySteps "E217", SetInPart "E672",
-        Sharp "W724", Lost "W725"
+        Sharp "W724", Lost "W725", Loose "W730"
     }
 
     fn describe(&self, say: &dyn Say) -> Report {
@@ -200,6 +217,14 @@ impl Describe for MeshFault {
                     .note(format!("{place} away from sharp corners{more}"))
                     .help(help)
             }
+            Self::Loose { of, curve, surface, length, at, more, imprint } => {
+                let report = loose(say, (*curve, *surface), (*length, *at), *more).at(*of, "has it beside the face");
+                report.help(if *imprint {
+                    "end the curve where it leaves the face"
+                } else {
+                    "`imprint: true` in the mesh cuts the curve there"
+                })
+            }
             Self::Lost { of, name, what, length, at, more } => lost(say, *of, name, *what, *length, *at, *more),
         }
     }
@@ -224,6 +249,18 @@ fn grouped(count: u64) -> String {
         .enumerate()
         .map(|(k, digit)| if k > 0 && (digits.len() - k).is_multiple_of(3) { format!(" {digit}") } else { digit.to_string() });
     places.collect()
+}
+
+/// The report of a curve that lies on a face and shares no nodes with it: the length that does, and where it leaves the face.
+fn loose(say: &dyn Say, (curve, surface): (Origin, Origin), (length, at): (f64, DVec3), more: usize) -> Report {
+    let (line, face) = (say.quoted(curve, "a curve"), say.quoted(surface, "a face"));
+    let report = Report::new(format!("{line} leaves {face} at {} and shares no nodes with it", say.point(at)))
+        .at(curve, format!("{} of it lie on {face}", say.length(length)));
+    match more {
+        0 => report,
+        1 => report.note("one more curve leaves a face so"),
+        n => report.note(format!("{n} more curves leave faces so")),
+    }
 }
 
 /// The report of a part that is too small for its mesh: its length, place, and how many others there are.
