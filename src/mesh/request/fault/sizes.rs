@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 
-use crate::base::fault::{Describe, Report, Say, codes};
+use crate::base::fault::quantities::{round_up, typed};
+use crate::base::fault::{Describe, Edit, Report, Say, Subject, codes};
 use crate::base::origin::Origin;
 
 /// A limit of a mesh, by its setting.
@@ -82,6 +83,11 @@ impl std::fmt::Display for MeshLimit {
     }
 }
 
+/// How far above what was reached an advised limit is.
+const ABOVE: f64 = 1.1;
+/// An advised chord error over the gap beside a face: a third of it and more is left to the bend.
+const BESIDE: f64 = 1.5;
+
 impl Describe for SizeFault {
     codes! { BelowFloor "E707", FloorKeeps "E707", NotReached "E703", GapTooWide "E703" }
 
@@ -101,23 +107,29 @@ impl Describe for SizeFault {
                     .help(format!("`min_size` below {size}, or a larger `{limit}`"))
             }
             Self::NotReached { limit, written_at, surface, reached, at } => {
-                let reached = match *limit {
+                let found = match *limit {
                     _ if !reached.is_finite() => "no finite bound was found".to_owned(),
                     MeshLimit::AngleError => say.angle(*reached),
                     _ => say.length(*reached),
                 };
-                Report::new(format!("`{limit}` cannot be kept on {}: {reached} at {}", say.quoted(*surface, "a face"), say.point(*at)))
+                let help = match *limit {
+                    _ if !reached.is_finite() => format!("raise `{limit}`"),
+                    MeshLimit::AngleError => format!("`{limit}: {}deg`, or more", (reached.to_degrees() * ABOVE).ceil()),
+                    _ => format!("`{limit}: {}`, or more", typed(say, round_up(*reached * ABOVE))),
+                };
+                Report::new(format!("`{limit}` cannot be kept on {}: {found} at {}", say.quoted(*surface, "a face"), say.point(*at)))
                     .at(*written_at, "not kept")
                     .at(*surface, "this face")
-                    .help(format!("raise `{limit}`"))
+                    .help(help)
             }
             Self::GapTooWide { gap, limit, surface, at } => {
-                let off = say.length(*gap);
+                let (off, above) = (say.length(*gap), typed(say, round_up(*gap * BESIDE)));
                 let whose = say.quoted(*surface, "a face");
                 Report::new(format!("`chord_error` cannot be kept on {whose}: an edge glued to it is {off} away at {}", say.point(*at)))
                     .at(limit.1, format!("{} is not above the gap", say.length(limit.0)))
                     .at(*surface, "this face")
-                    .help(format!("a `chord_error` well above {off}"))
+                    .help(format!("`chord_error: {above}`; or make the faces meet: a gap is no part of the bend"))
+                    .edit(Subject::Entity(limit.1), Edit::Put(above))
             }
         }
     }
