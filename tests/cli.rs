@@ -816,3 +816,40 @@ fn failed_runs_tell_what_is_sound() {
         assert!(json.status == 1 && json.out.contains(row), "{row} in\n{}", json.out);
     }
 }
+
+/// Texts of scripts and files do not steer the terminal: they are shown, and stand as they are in JSON.
+#[test]
+fn nothing_that_is_printed_steers_the_terminal() {
+    let text = "units mm\nlet t = \"a\\u{1b}]0;x\\u{7}b\\u{202e}c\"\nreport \"\\u{1b}[2J\": t\ncheck \"\\u{9b}31m\": 1 > 2\n\
+        import \"rows.csv\" as rows\nreport rows\nlet y = \"raw \u{1b}[31m\" + 1 // \u{7}\n";
+    let folder = Folder::new("steers").with("m.loft", text).with("rows.csv", "name,x\n\"p\u{202e}q\",1\n");
+    let steers = |c: char| c.is_control() && c != '\n' || matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    let plain = folder.loft(&["run", "m.loft"]);
+    assert!(!plain.out.contains(steers) && !plain.err.contains(steers), "{:?}\n{:?}", plain.out, plain.err);
+    for shown in ["a\\u{1b}]0;x\\u{7}b\\u{202e}c", "\\u{1b}[2J", "\\u{9b}31m", "p\\u{202e}q"] {
+        assert!(plain.out.contains(shown), "{shown} {}", plain.out);
+    }
+    // The marks stand under what they mark.
+    let (line, marks) =
+        (plain.err.lines().find(|l| l.contains("raw")).unwrap(), plain.err.lines().find(|l| l.contains("not by `+`")).unwrap());
+    let column = |line: &str, sign: char| line.chars().position(|c| c == sign);
+    assert_eq!(column(line, '+'), column(marks, '┬'), "{}", plain.err);
+    let colored = folder.loft(&["--color", "always", "run", "m.loft"]);
+    let bare =
+        |text: &str| ["0", "1;31", "2", "31", "32", "36"].iter().fold(text.to_owned(), |t, code| t.replace(&format!("\u{1b}[{code}m"), ""));
+    assert_eq!((bare(&colored.out), bare(&colored.err)), (plain.out, plain.err));
+    assert_eq!(folder.loft(&["run", "m.loft", "--json"]).json()["reports"][0]["rows"][0][0], "a\u{1b}]0;x\u{7}b\u{202e}c");
+    assert_eq!(run(&folder.0, &["fmt", "-"], Some(b"let a = \"\x1b\"\n")).out, "let a = \"\u{1b}\"\n");
+}
+
+#[test]
+fn names_of_files_hold_nothing_that_steers_a_terminal() {
+    let folder = Folder::new("unfit").with("m.loft", "units mm\ncurve c = line((0, 0, 0), (1, 0, 0))\nexport c to \"a\\u{1b}b.csv\"\n");
+    let told = folder.loft(&["run", "m.loft"]);
+    assert!(told.status == 1 && told.err.contains("E808 × cannot write \"a\\u{1b}b.csv\": its name holds U+001B"), "{}", told.err);
+    let folder = folder.with("m.loft", "import \"x\\u{202e}y.csv\" as q\n");
+    assert!(folder.loft(&["run", "m.loft"]).err.contains("E801 × cannot read \"x\\u{202e}y.csv\": its name holds U+202E"));
+    let folder = folder.with("m.loft", "units mm\ncurve c = line((0, 0, 0), (1, 0, 0))\npicture c to \"p\\u{7}.svg\"\n");
+    assert!(folder.loft(&["run", "m.loft"]).err.contains("E808 × cannot write \"p\\u{7}.svg\": its name holds U+0007"));
+    assert_eq!(folder.names(), ["m.loft"]);
+}

@@ -20,5 +20,6 @@ pub mod text;
 pub mod tolerance;
 pub mod triangulate;
 pub mod triangulate_points;
+pub mod visible;
 pub mod work;
 pub mod xml;

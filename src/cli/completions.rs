@@ -16,6 +16,6 @@ fn run(matches: &ArgMatches, terminal: &Terminal) -> Exit {
     let Some(shell) = matches.get_one::<Shell>("shell") else { return Exit::Usage };
     let mut script = Vec::new();
     clap_complete::generate(*shell, &mut super::command_line(), "loft", &mut script);
-    terminal.print(&String::from_utf8_lossy(&script));
+    terminal.print_data(&String::from_utf8_lossy(&script));
     Exit::Fine
 }

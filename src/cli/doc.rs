@@ -19,8 +19,8 @@ fn arguments(command: clap::Command) -> clap::Command {
 
 fn run(matches: &ArgMatches, terminal: &Terminal) -> Exit {
     match matches.get_one::<String>("name") {
-        None if matches.get_flag("textmate") => terminal.print(&textmate::grammar()),
-        None if matches.get_flag("markdown") => terminal.print(&reference::manual()),
+        None if matches.get_flag("textmate") => terminal.print_data(&textmate::grammar()),
+        None if matches.get_flag("markdown") => terminal.print_data(&reference::manual()),
         None => terminal.print(&reference::overview()),
         Some(name) => return word(name, terminal),
     }

@@ -8,6 +8,7 @@ use clap::{Arg, ArgAction, ArgMatches};
 use super::rewrite::rewrite;
 use super::{Command, Exit, Terminal};
 use crate::base::limits;
+use crate::base::visible::colored;
 use crate::lang::diag::diagnostic::Sources;
 use crate::lang::diag::render::render_all;
 use crate::lang::fmt::{Formatted, format};
@@ -85,7 +86,7 @@ impl Task<'_> {
         match self.formatted("-", &source) {
             Ok((formatted, exit)) if self.check => exit.max(self.differs("-", &source, &formatted)),
             Ok((formatted, exit)) => {
-                self.terminal.print(&formatted.text);
+                self.terminal.print_data(&formatted.text);
                 exit
             }
             Err(exit) => exit,
@@ -165,7 +166,7 @@ fn first_difference(old: &str, new: &str, colours: bool) -> String {
             let bare = line.trim_end();
             let rest = line[bare.len()..].replace('\r', "␍").replace('\t', "⇥").replace(' ', "·").replace('\u{feff}', "");
             let line = format!("{sign} {bare}{rest}");
-            text += &if colours { format!("\x1b[{colour}m{line}\x1b[0m\n") } else { format!("{line}\n") };
+            text += &format!("{}\n", colored(&line, colour, colours));
         }
         if lines.len() > SHOWN {
             let more = lines.len() - SHOWN;

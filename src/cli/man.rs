@@ -22,7 +22,7 @@ fn arguments(command: clap::Command) -> clap::Command {
 }
 
 fn run(_: &ArgMatches, terminal: &Terminal) -> Exit {
-    terminal.print(&page());
+    terminal.print_data(&page());
     Exit::Fine
 }
 

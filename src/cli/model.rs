@@ -64,7 +64,7 @@ pub fn all(options: &Options, outputs: Outputs, terminal: &Terminal) -> Exit {
         terminal.print(&format!("{gap}{}", cases::text(&cases.cases, terminal.color_out)));
     }
     if options.json && worst != Exit::Interrupted && (several || options.table.is_some()) {
-        terminal.print(&cases_text(&cases));
+        terminal.print_data(&cases_text(&cases));
     }
     worst
 }
@@ -170,7 +170,7 @@ fn one(
     if !options.json && !options.quiet {
         terminal.print(&summary::text(&outcome.report, outcome.tolerance, terminal.color_out));
     } else if options.json && !several {
-        terminal.print(&report_text(&outcome.report));
+        terminal.print_data(&report_text(&outcome.report));
     }
     if !several {
         // The program ends: the system takes the memory back at once.

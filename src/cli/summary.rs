@@ -3,6 +3,7 @@
 use crate::base::job;
 use crate::base::text::columns as width;
 use crate::base::tolerance::Tolerance;
+use crate::base::visible::{colored, visible};
 use crate::session::report::{Cell, Report, Table};
 
 /// Significant digits of a number in a summary; the JSON report has all.
@@ -24,7 +25,9 @@ impl Grid {
 
     pub(super) fn print(&self, out: &mut String, color: bool) {
         let columns = self.head.len();
-        let lines = || std::iter::once(&self.head).chain(&self.rows);
+        let seen = |row: &Vec<String>| row.iter().map(|cell| visible(cell).into_owned()).collect::<Vec<String>>();
+        let all: Vec<Vec<String>> = job::looking(std::iter::once(&self.head).chain(&self.rows)).map(seen).collect();
+        let lines = || all.iter();
         // A column without any value says nothing.
         let shown: Vec<usize> = (0..columns).filter(|&c| self.rows.iter().any(|r| !r[c].is_empty())).collect();
         let widths: Vec<usize> = (0..columns).map(|c| job::looking(lines()).map(|r| width(&r[c])).max().unwrap_or(0)).collect();
@@ -43,11 +46,7 @@ impl Grid {
 }
 
 fn dim(text: &str, color: bool) -> String {
-    if color { format!("\u{1b}[2m{text}\u{1b}[0m") } else { text.to_owned() }
-}
-
-fn paint(text: &str, code: u8, color: bool) -> String {
-    if color { format!("\u{1b}[{code}m{text}\u{1b}[0m") } else { text.to_owned() }
+    colored(text, "2", color)
 }
 
 /// A number in few digits.
@@ -185,15 +184,15 @@ fn checks(report: &Report, out: &mut String, color: bool) {
             (left, right) if left.is_empty() || right.is_empty() || check.pass => String::new(),
             (left, right) => format!("  ({left} against {right})"),
         };
-        let word = if check.pass { paint("pass", 32, color) } else { paint("FAIL", 31, color) };
-        out.push_str(&format!("{word}  {}{sides}\n", check.label));
+        let word = if check.pass { colored("pass", "32", color) } else { colored("FAIL", "31", color) };
+        out.push_str(&format!("{word}  {}\n", visible(&format!("{}{sides}", check.label))));
     }
 }
 
 /// A table under its title.
 pub fn print_table(table: &Table, out: &mut String, color: bool) {
     if !table.title.is_empty() {
-        out.push_str(&format!("{}\n", table.title));
+        out.push_str(&format!("{}\n", visible(&table.title)));
     }
     let number = |c: usize| table.rows.iter().any(|r| matches!(r.get(c), Some(Cell::Number(_))));
     let head: Vec<String> = table

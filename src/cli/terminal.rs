@@ -1,9 +1,11 @@
 //! Standard output and standard error: who writes where, and in which colours.
 
+use std::borrow::Cow;
 use std::io::{self, IsTerminal, Write};
 use std::sync::{Mutex, PoisonError};
 
 use super::Exit;
+use crate::base::visible::{visible, visible_beside_colors};
 use crate::session::disk::plain;
 
 /// The first text that standard output did not take.
@@ -35,16 +37,22 @@ impl Terminal {
         Self { color_out: color(out), color_err: color(err), watched: err && !automatic }
     }
 
-    /// Prints on standard output; what that does not take is reported by [`Terminal::end`].
+    /// Prints a text for people on standard output, with nothing in it that steers the terminal but colours; what standard output does not
+    /// take is reported by [`Terminal::end`].
     pub fn print(&self, text: &str) {
+        self.print_data(&shown(text, self.color_out));
+    }
+
+    /// Prints what programs read as it is: JSON, scripts, pages of a manual, pictures.
+    pub fn print_data(&self, text: &str) {
         let mut out = io::stdout().lock();
         lose(out.write_all(text.as_bytes()).and_then(|()| out.flush()));
     }
 
-    /// The same in pieces, as long as `go_on` says so; whether it said so to the end.
+    /// As [`Terminal::print`], in pieces, as long as `go_on` says so; whether it said so to the end.
     pub fn print_while(&self, text: &str, go_on: &dyn Fn() -> bool) -> bool {
         let mut out = io::stdout().lock();
-        let (whole, written) = write_while(&mut out, text.as_bytes(), go_on);
+        let (whole, written) = write_while(&mut out, shown(text, self.color_out).as_bytes(), go_on);
         lose(written);
         whole
     }
@@ -64,9 +72,9 @@ impl Terminal {
         if exit == Exit::Fine { status } else { exit }
     }
 
-    /// Prints on standard error.
+    /// Prints a text for people on standard error.
     pub fn eprint(&self, text: &str) {
-        let _ = io::stderr().lock().write_all(text.as_bytes());
+        let _ = io::stderr().lock().write_all(shown(text, self.color_err).as_bytes());
     }
 
     /// Says on standard error what is wrong with the command line.
@@ -74,6 +82,11 @@ impl Terminal {
         self.eprint(&format!("loft: {text}\n"));
         Exit::Usage
     }
+}
+
+/// A text as people see it, with colours where there are some.
+fn shown(text: &str, color: bool) -> Cow<'_, str> {
+    if color { visible_beside_colors(text) } else { visible(text) }
 }
 
 /// Remembers that standard output did not take a text.

@@ -11,6 +11,7 @@ use crate::base::limits::FILE_WORK;
 use crate::base::origin::Origin;
 use crate::base::work::{Budget, Exceeded};
 use crate::io::curve_files::polylines::{Drawing, Polyline};
+use crate::io::files::access::unfit_name;
 use crate::io::files::fault::{AccessFault, FormatFault, OutputFault};
 use crate::io::formats::choice::curve_format_for;
 use crate::io::formats::endings::{IGES, STEP, Sort, misfit};
@@ -167,6 +168,9 @@ pub(super) fn write_file(
     files: &dyn Files,
     fill: &mut dyn FnMut(&mut dyn Write) -> std::io::Result<()>,
 ) -> Result<u64, Halt> {
+    if let Some(why) = unfit_name(path) {
+        return Err(AccessFault::CannotWrite { of, path: path.to_owned(), why }.into());
+    }
     files.write(path, fill).map_err(|error| match error {
         FileError::Outside => AccessFault::Outside { of, path: path.to_owned() }.into(),
         FileError::Other(why) => AccessFault::CannotWrite { of, path: path.to_owned(), why }.into(),

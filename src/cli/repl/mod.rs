@@ -92,7 +92,7 @@ fn show_pictures(answer: &Answer, terminal: &Terminal, way: &mut Option<Option<i
         let Part::Picture(bytes) = part else { continue };
         let known = *way.get_or_insert_with(|| inline::Way::of_terminal().unwrap_or_else(|| inline::Way::asked(typed)));
         if let Some(way) = known {
-            terminal.print(&way.text(bytes));
+            terminal.print_data(&way.text(bytes));
         }
     }
 }

@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 use std::io::Write;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use crate::base::visible::steers;
+
 /// What a file cannot be read for.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FileError {
@@ -18,6 +20,12 @@ pub enum FileError {
     TooLarge(u64),
     /// Anything else, in the system's words.
     Other(String),
+}
+
+/// Why a path names no file on any system, in words: it holds what steers a terminal.
+pub fn unfit_name(path: &str) -> Option<String> {
+    let found = path.chars().find(|c| steers(*c))?;
+    Some(format!("its name holds U+{:04X}, which steers whatever shows the name", found as u32))
 }
 
 /// Source of scripts and data, sink of outputs.

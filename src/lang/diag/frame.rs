@@ -5,6 +5,7 @@
 
 use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanContents};
 
+use crate::base::visible::visible;
 use crate::lang::diag::diagnostic::{Label, SourceFile};
 use crate::lang::diag::paint::{Colors, shortened};
 
@@ -42,6 +43,13 @@ struct Row {
 }
 
 impl Row {
+    /// Nothing in the line steers the terminal, and labels stand where they did.
+    fn show(&mut self) {
+        let at = |at: &mut usize| *at = visible(&self.text[..*at]).len();
+        self.labels.iter_mut().flat_map(|(from, to, _)| [from, to]).for_each(at);
+        self.text = visible(&self.text).into_owned();
+    }
+
     /// A place between two characters is marked under the one behind it, at the end of the line under a blank.
     fn widen(&mut self) {
         for (from, to, _) in &mut self.labels {
@@ -84,6 +92,7 @@ fn rows(source: &SourceFile, labels: &[&Label]) -> Vec<Row> {
             if line.len() > WHOLE_LINE {
                 cut(&mut row);
             }
+            row.show();
             row
         })
         .collect()

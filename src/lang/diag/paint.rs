@@ -1,15 +1,20 @@
 //! Colours of reports, and the length of their words.
 
+use std::borrow::Cow;
+
 use crate::base::fault::Severity;
+use crate::base::visible::{colored, visible};
 
 /// Characters of the longest message that is shown whole.
 const WORDS: usize = 2000;
 
-/// Words that quote something endless: their beginning and end. The JSON report has them whole.
-pub(super) fn shortened(words: &str) -> std::borrow::Cow<'_, str> {
+/// Words as they are shown: of what quotes something endless the beginning and the end, and nothing that steers the terminal. The JSON report
+/// has them whole.
+pub(super) fn shortened(words: &str) -> Cow<'_, str> {
+    let words = visible(words);
     let total = words.chars().count();
     if total <= WORDS {
-        return words.into();
+        return words;
     }
     let begin: String = words.chars().take(WORDS / 2).collect();
     let end: String = words.chars().skip(total - WORDS / 4).collect();
@@ -24,7 +29,7 @@ pub(super) struct Colors {
 
 impl Colors {
     fn with(&self, code: &str, text: &str) -> String {
-        if self.on { format!("\x1b[{code}m{text}\x1b[0m") } else { text.to_owned() }
+        colored(text, code, self.on)
     }
 
     fn strong(&self) -> &'static str {

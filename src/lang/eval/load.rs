@@ -5,6 +5,7 @@ use std::sync::Arc;
 use crate::base::limits;
 use crate::base::origin::Origin;
 use crate::io::FileError;
+use crate::io::files::access::unfit_name;
 use crate::io::files::fault::{AccessFault, ContentFault};
 use crate::lang::diag::diagnostic::Diagnostic;
 use crate::lang::eval::context::Cx;
@@ -147,7 +148,7 @@ impl Cx<'_> {
         }
     }
 
-    /// The text of a path and where it stands.
+    /// The text of a path that is read and where it stands. E801 where it names no file on any system.
     pub(crate) fn path_text(&mut self, code: Code<'_>, path: ExprId) -> Result<(String, Origin), Halt> {
         let text = match code.expr(path) {
             Expr::Text(parts) => match parts.as_slice() {
@@ -156,7 +157,11 @@ impl Cx<'_> {
             },
             _ => return Err(Halt::Bug("a path that is no text")),
         };
-        Ok((text, self.origin_at(path)))
+        let origin = self.origin_at(path);
+        match unfit_name(&text) {
+            Some(why) => Err(AccessFault::CannotRead { of: origin, path: text, similar: Vec::new(), why }.into()),
+            None => Ok((text, origin)),
+        }
     }
 
     /// The circle of modules that loading this file would close.

@@ -5,6 +5,7 @@ use super::line::Line;
 use super::quotes::{label, quoted};
 use super::values::{Value, rounded};
 use super::words::{Kind, Measure, kind_of};
+use crate::base::visible::colored;
 
 /// Changes of one run that are described; further ones are counted.
 pub const MOST: usize = 40;
@@ -26,7 +27,7 @@ pub enum DiffLine {
 impl DiffLine {
     /// As text: `- ` before what was, `+ ` before what is.
     pub fn text(&self, color: bool) -> String {
-        let paint = |code: &str, text: String| if color { format!("\u{1b}[{code}m{text}\u{1b}[0m") } else { text };
+        let paint = |code: &str, text: String| colored(&text, code, color);
         match self {
             Self::Old(line) => paint("31", format!("  - {line}")),
             Self::New(line) => paint("32", format!("  + {line}")),
