@@ -76,6 +76,7 @@ codes! {
     now "W226", "points-exceeded", "a surface overshoots its scattered points";
     now "W227", "loose-box", "a box may be too large";
     now "W228", "rough-measure", "a measure is known to few digits";
+    now "W229", "mixed-scripts", "a name has letters that look like those of another script";
     now "E230", "not-in-this-version", "a word of a later version";
     now "E301", "argument-missing", "an argument is missing";
     now "E302", "too-many-arguments", "too many arguments";

@@ -15,6 +15,7 @@ pub mod expected_words;
 pub mod fixes;
 pub mod foreign;
 pub mod keywords;
+pub mod look_alikes;
 pub mod matching;
 pub mod mistake;
 pub mod number;
@@ -176,6 +177,10 @@ impl Parser<'_> {
         open_strings.sort_unstable();
         let causes = split.iter().filter(|m| !m.follows_from(&open_strings));
         self.found.extend(own.iter().chain(causes).map(|m| m.diagnose(self.source, self.file)));
+        if !self.source.is_ascii() {
+            let names = (0..self.tokens.len()).filter(|token| self.tokens.kinds[*token] == Kind::Name).map(|token| self.tokens.span(token));
+            self.found.extend(look_alikes::found(self.source, names, self.file));
+        }
     }
 
     /// The `///` lines before a token.
