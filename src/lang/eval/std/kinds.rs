@@ -182,6 +182,11 @@ impl Faces {
         Self(vec![Value::Shell(shell)])
     }
 
+    /// The surfaces and shells that they are of, in order.
+    pub fn members(self) -> Vec<Value> {
+        self.0
+    }
+
     /// The surfaces they lie on, in order.
     pub fn surfaces(&self) -> Vec<Surface> {
         let of = |value: &Value| match value {

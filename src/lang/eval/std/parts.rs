@@ -5,12 +5,14 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use crate::base::fault::ValueFault;
+use crate::base::origin::Origin;
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
+use crate::lang::eval::std::kinds::Faces;
 use crate::lang::eval::std::measures::{area_of, box_of, told};
 use crate::lang::values::conversions::{Area, Length, Point, Volume};
 use crate::lang::values::part::PartValue;
-use crate::lang::values::value::Value;
+use crate::lang::values::value::{BodyKind, ShellValue, Value};
 use crate::model::measure;
 use crate::surface::Surface;
 use crate::surface::analysis::recognize::SimpleForm;
@@ -47,15 +49,48 @@ fn hex(text: &str) -> Option<[f64; 3]> {
 
 /// What the volume of a part, or its centre, is of.
 fn volumes(cx: &mut Cx, part: &PartValue) -> Result<(f64, DVec3), Halt> {
+    let shells = closed_of(cx, part.solids(), (part.name.clone(), part.file.origin))?;
+    let (volume, moment) = enclosed(cx, shells)?;
+    if volume > 0.0 { Ok((volume, moment / volume)) } else { Err(nothing()) }
+}
+
+/// Shells of some shells and surfaces: solids and closed ones as they are, and the rest together. Many programs write each face as a shell of
+/// its own, and what closes then are all of them.
+fn closed_of(cx: &mut Cx, things: Vec<Value>, (name, origin): (Arc<str>, Origin)) -> Result<Vec<Arc<ShellValue>>, Halt> {
+    let module = cx.module();
+    let (mut closed, mut open, mut surfaces) = (Vec::new(), Vec::new(), Vec::new());
+    for thing in things {
+        match thing {
+            Value::Surface(surface) => surfaces.push(surface),
+            Value::Shell(shell) if shell.body == Some(BodyKind::Solid) || cx.glued(module, &shell)?.shell.closed => closed.push(shell),
+            Value::Shell(shell) => {
+                surfaces.extend(shell.surfaces.iter().cloned());
+                open.push(shell);
+            }
+            _ => {}
+        }
+    }
+    match open.as_slice() {
+        [one] if surfaces.len() == one.surfaces.len() => closed.push(one.clone()),
+        _ if surfaces.is_empty() => {}
+        shells => {
+            let snap = shells.iter().filter_map(|shell| shell.snap).max_by(|a, b| a.0.total_cmp(&b.0));
+            closed.push(Arc::new(ShellValue { name, module, origin, surfaces, snap, imprint: None, flip: false, body: None }));
+        }
+    }
+    Ok(closed)
+}
+
+/// The volume that closed shells enclose, and its moment.
+fn enclosed(cx: &mut Cx, shells: Vec<Arc<ShellValue>>) -> Result<(f64, DVec3), Halt> {
     let (mut volume, mut moment) = (0.0, DVec3::ZERO);
-    for body in part.solids() {
-        let Value::Shell(shell) = body else { continue };
+    for shell in shells {
         let solid = cx.solid(&shell)?;
         let own = told(cx, "the volume", shell.origin, (solid.volume.abs(), solid.error));
         volume += own;
         moment += solid.centroid * own;
     }
-    if volume > 0.0 { Ok((volume, moment / volume)) } else { Err(nothing()) }
+    Ok((volume, moment))
 }
 
 fn nothing() -> Halt {
@@ -208,6 +243,8 @@ fields! {
     /// Area of all faces of a part.
     fn area(of: Arc<PartValue>) -> Area = |cx, of| Ok(area_of(cx, &of.faces));
     /// Volume of all solids of a part. Where the file has none it is that of the closed shells that its faces form.
+    ///
+    /// Shells of the file that are open, of a face each perhaps, count together.
     fn volume(of: Arc<PartValue>) -> Volume = |cx, of| Ok(Volume(volumes(cx, &of)?.0));
     /// Centre of the volume of the solids of a part. Where they enclose none it is that of the area of its faces.
     fn centroid(of: Arc<PartValue>) -> Point = |cx, of| match volumes(cx, &of) {
@@ -225,6 +262,14 @@ fields! {
     fn bbox(of: Vec<Surface>) -> Value = |cx, of| boxed(cx, &of);
     /// Area of surfaces together.
     fn area(of: Vec<Surface>) -> Area = |cx, of| Ok(area_of(cx, &of));
+    /// Volume that surfaces and shells enclose together.
+    ///
+    /// It is that of each closed shell, and of all others glued together. Where these stay open it is E656.
+    fn volume(of: Faces) -> Volume = |cx, of| {
+        let origin = cx.origin();
+        let shells = closed_of(cx, of.members(), ("".into(), origin))?;
+        Ok(Volume(enclosed(cx, shells)?.0))
+    };
 }
 
 fn boxed(cx: &mut Cx, faces: &[Surface]) -> Result<Value, Halt> {
