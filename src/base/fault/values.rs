@@ -29,6 +29,15 @@ pub enum ValueFault {
         /// What is allowed.
         range: LengthRange,
     },
+    /// E306: an offset farther than a curve allows.
+    OffsetTooFar {
+        /// The distance, model units.
+        found: f64,
+        /// What is allowed.
+        range: LengthRange,
+        /// About the largest distance that works on this side, model units.
+        most: f64,
+    },
     /// E306: the normal of a plane that the curve leaves.
     NotItsPlane {
         /// Parameter name.
@@ -228,15 +237,6 @@ fn exclusive(report: Report, arguments: &[&'static str]) -> Report {
     }
 }
 
-impl Describe for ValueFault {
-    codes! {
-        OutsideRange "E306", LengthOutside "E306", NotItsPlane "E306", NotAcross "E306", Missing "E301", Exclusive "E305",
-        NoLinks "E211", NoFaces "E211", WrongKind "E211", Mixed "E211", NotOneEdge "E215", NothingSelected "W728",
-        NotMeshed "W224", OfNothing "W729", Raised "E903", NotInThisVersion "E230", Work "E217", StageWork "E217", RowWork "E217",
-        Limit "E217", LooseBox "W227", RoughMeasure "W228"
-    }
-
-    fn describe(&self, say: &dyn Say) -> Report {
 /// An edge among several that lie at one place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EdgePlace {
@@ -277,9 +277,21 @@ fn not_one_edge(say: &dyn Say, of: Origin, found: &[EdgePlace]) -> Report {
     report.help(format!("a curve or a point that lies on one of them alone: `edge({key})`")).edit(Subject::Argument("on"), Edit::Put(key))
 }
 
+impl Describe for ValueFault {
+    codes! {
+        OutsideRange "E306", LengthOutside "E306", OffsetTooFar "E306", NotItsPlane "E306", NotAcross "E306", Missing "E301", Exclusive "E305",
+        NoLinks "E211", NoFaces "E211", WrongKind "E211", Mixed "E211", NotOneEdge "E215", NothingSelected "W728",
+        NotMeshed "W224", OfNothing "W729", Raised "E903", NotInThisVersion "E230", Work "E217", StageWork "E217", RowWork "E217",
+        Limit "E217", LooseBox "W227", RoughMeasure "W228"
+    }
+
+    fn describe(&self, say: &dyn Say) -> Report {
         match self {
             Self::OutsideRange { argument, found, range } => outside(argument, found.clone(), range),
             Self::LengthOutside { argument, found, range } => outside(argument, say.length(*found), &range.words(say)),
+            Self::OffsetTooFar { found, range, most } => outside("distance", say.length(*found), &range.words(say))
+                .help(format!("`{}` works, and is about the most on this side", typed(say, *most)))
+                .edit(Subject::Argument("distance"), Edit::Put(typed(say, *most))),
             Self::NotItsPlane { argument, by } => {
                 let found = format!("one whose plane the curve leaves by {}", say.length(*by));
                 outside(argument, found, "the normal of a plane that contains the curve")

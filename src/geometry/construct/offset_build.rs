@@ -31,7 +31,7 @@ pub fn offset(curve: &Curve, distance: f64, normal: DVec3, origin: Origin) -> Re
     check_plane(curve, normal)?;
     let plan = OffsetPlan { distance, normal, origin };
     let pieces = smooth_pieces(curve);
-    let joined = plan.join(plan.sides(pieces)?)?;
+    let joined = plan.joined(&pieces).map_err(|fault| plan.with_largest(fault, &pieces))?;
     let shape = match joined.as_slice() {
         [one] => one.shape().clone(),
         _ => Shape::Composite(Arc::new(Composite::new(joined))),
@@ -100,7 +100,34 @@ struct OffsetPlan {
     origin: Origin,
 }
 
+/// Halvings in the search of the largest distance that works.
+const HALVINGS: u32 = 32;
+/// Digits of the largest distance that works.
+const DIGITS: i32 = 3;
+
 impl OffsetPlan {
+    /// The offset in pieces.
+    fn joined(&self, pieces: &[Curve]) -> Result<Vec<Curve>> {
+        self.join(self.sides(pieces.to_vec())?)
+    }
+
+    /// The fault of a distance that is too large with one that works on its side, about the largest.
+    fn with_largest(&self, fault: Fault, pieces: &[Curve]) -> Fault {
+        let Some(ValueFault::LengthOutside { found, range, .. }) = fault.of() else { return fault };
+        let works = |distance: f64| Self { distance, ..*self }.joined(pieces).is_ok();
+        let (mut low, mut high) = (0.0, self.distance);
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            if works(middle) { low = middle } else { high = middle }
+        }
+        let step = math::pow(10.0, math::log10(low.abs()).floor() + 1.0 - f64::from(DIGITS));
+        let most = (low / step).trunc() * step;
+        if !(most.is_finite() && works(most)) {
+            return fault;
+        }
+        ValueFault::OffsetTooFar { found: *found, range: range.clone(), most }.into()
+    }
+
     fn too_far(&self, range: LengthRange) -> Fault {
         ValueFault::LengthOutside { argument: "distance", found: self.distance, range }.into()
     }

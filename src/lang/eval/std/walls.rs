@@ -25,7 +25,9 @@ choices! {
 
 /// What is wrong with the distance by which a side of a wall is moved, said of the wall's thickness.
 fn of_thickness(fault: Fault, side: &WallSide, thickness: f64) -> Fault {
-    let Some(ValueFault::LengthOutside { argument: "distance", range, .. }) = fault.of() else { return fault };
+    let Some(ValueFault::LengthOutside { argument: "distance", range, .. } | ValueFault::OffsetTooFar { range, .. }) = fault.of() else {
+        return fault;
+    };
     let both = matches!(side, WallSide::Both);
     let (argument, found) = if both { ("thickness / 2", 0.5 * thickness) } else { ("thickness", thickness) };
     ValueFault::LengthOutside { argument, found, range: range.clone() }.into()
