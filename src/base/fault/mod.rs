@@ -163,6 +163,10 @@ pub trait Say {
         let name = self.name(origin);
         if name.is_empty() { otherwise.to_owned() } else { format!("`{name}`") }
     }
+    /// The same of what meets something: an unbounded plane is a value without an origin.
+    fn met(&self, origin: Origin, otherwise: &str) -> String {
+        if origin.is_some() { self.quoted(origin, otherwise) } else { "the plane".to_owned() }
+    }
 }
 
 /// Says everything in bare numbers; what `Display` uses.

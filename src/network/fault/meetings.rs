@@ -74,7 +74,7 @@ impl Describe for MeetingFault {
 fn no_meeting(a: (Origin, DVec3), b: (Origin, DVec3), near: bool, tolerance: f64, say: &dyn Say) -> Report {
     let gap = a.1.distance(b.1);
     let wider = if near { format!("; {} would let them meet", typed(say, round_up(gap))) } else { String::new() };
-    let (one, other) = (say.quoted(a.0, "one curve"), say.quoted(b.0, "the other"));
+    let (one, other) = (say.met(a.0, "one curve"), say.met(b.0, "the other"));
     let (here, there) = say.pair(a.1, b.1);
     Report::new(format!("{one} and {other} do not meet: they come closest at {here} and {there}, {} apart", say.length(gap)))
         .both(a.0, b.0, "this curve")
@@ -90,8 +90,8 @@ fn several_meetings(a: Origin, b: Origin, candidates: &[(DVec3, f64)], say: &dyn
     let (name_a, name_b) = (say.name(a), say.name(b));
     let report = Report::new(format!(
         "{} and {} meet {} times: at {}{more}",
-        say.quoted(a, "one curve"),
-        say.quoted(b, "the other"),
+        say.met(a, "one curve"),
+        say.met(b, "the other"),
         candidates.len(),
         list.join(", ")
     ))
@@ -112,14 +112,9 @@ fn overlap(a: Origin, b: Origin, overlaps: &[(DVec3, DVec3)], say: &dyn Say) -> 
         format!("from {from} to {to}")
     };
     let list: Vec<String> = overlaps.iter().map(ends).collect();
-    Report::new(format!(
-        "{} and {} share a run {}, not a point",
-        say.quoted(a, "one curve"),
-        say.quoted(b, "the other"),
-        list.join(" and ")
-    ))
-    .both(a, b, "this curve")
-    .help("`meet(a, b)` lists the ends of the run")
+    Report::new(format!("{} and {} share a run {}, not a point", say.met(a, "one curve"), say.met(b, "the other"), list.join(" and ")))
+        .both(a, b, "this curve")
+        .help("`meet(a, b)` lists the ends of the run")
 }
 
 #[cfg(test)]

@@ -63,7 +63,7 @@ impl Describe for CrossingFault {
     fn describe(&self, say: &dyn Say) -> Report {
         match self {
             Self::NoCurve { a, b, touch, tolerance } => {
-                let (x, y) = (say.quoted(*a, "one surface"), say.quoted(*b, "the other"));
+                let (x, y) = (say.met(*a, "one surface"), say.met(*b, "the other"));
                 let message = match touch {
                     Some(at) => format!("{x} and {y} meet in no curve: they touch at {}", say.point(*at)),
                     None => format!("{x} and {y} do not meet"),
@@ -73,7 +73,7 @@ impl Describe for CrossingFault {
             }
             Self::SeveralCurves { a, b, curves } => {
                 let list = listed(curves, say);
-                let (x, y) = (say.quoted(*a, "one surface"), say.quoted(*b, "the other"));
+                let (x, y) = (say.met(*a, "one surface"), say.met(*b, "the other"));
                 Report::new(format!("{x} and {y} meet in {} curves: {list}", curves.len()))
                     .both(*a, *b, "this surface")
                     .help("`meet(a, b)` is the list of all of them")
@@ -87,8 +87,8 @@ impl Describe for CrossingFault {
             }
             Self::RunAlong { a, b, at, tolerance } => Report::new(format!(
                 "{} and {} run along each other near {}, so the curve in which they meet is not well defined",
-                say.quoted(*a, "one surface"),
-                say.quoted(*b, "the other"),
+                say.met(*a, "one surface"),
+                say.met(*b, "the other"),
                 say.point(*at)
             ))
             .both(*a, *b, "this surface")
