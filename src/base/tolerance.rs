@@ -72,6 +72,8 @@ pub const SINGULAR: f64 = 1e-9;
 pub const SAME_SLOPE: f64 = 1e-10;
 /// Largest share of the size of a face's borders by which they are moved to make them borders of its surface.
 pub const MOST_REPAIR: f64 = 0.1;
+/// Share of the size of a face's borders up to which they may be farther off its surface than they were found to be.
+pub const SMALL_GAP: f64 = 1e-3;
 /// How far before a knot, in the parameter, the span that ends there is evaluated.
 pub const BEFORE_KNOT: f64 = 1e-13;
 /// Places on a surface nearer than so many tolerances are taken as one where curves divide it: two curves that meet there are each

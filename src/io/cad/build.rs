@@ -3,7 +3,7 @@
 use crate::base::job;
 use crate::base::origin::Origin;
 use crate::base::text::decimals;
-use crate::base::tolerance::{MOST_REPAIR, Tolerance};
+use crate::base::tolerance::{MOST_REPAIR, SMALL_GAP, Tolerance};
 use crate::io::cad::border::{Border, reach};
 use crate::io::cad::defect::{Defect, defect};
 use crate::io::cad::face::{Face, least_area};
@@ -23,8 +23,8 @@ pub struct FaceSurfaces {
     pub surfaces: Vec<Surface>,
     /// Where its loops do not agree which side is the face.
     pub doubts: Vec<Doubt>,
-    /// Its loops close only within what the file says of its accuracy.
-    pub by_accuracy: bool,
+    /// How far its loops were moved where they close only within more than they were found to be off, model units, and by which rule.
+    pub closed_within: Option<(f64, Rule)>,
 }
 
 impl Part {
@@ -35,11 +35,11 @@ impl Part {
         for (k, item) in self.surfaces.iter().enumerate() {
             job::poll();
             self.built.push(match item.value.surfaces(origin, tolerance) {
-                Ok(FaceSurfaces { surfaces, doubts, by_accuracy }) => {
-                    if by_accuracy {
+                Ok(FaceSurfaces { surfaces, doubts, closed_within }) => {
+                    if let Some((distance, rule)) = closed_within {
                         let entity = format!("{} at {}{}", item.name, self.mark, item.id);
-                        let (distance, place) = (item.value.slack, item.value.off.place);
-                        self.repairs.push(Repair { rule: Rule::Accuracy, face: k, entity, line: item.line, distance, place });
+                        let place = item.value.off.place;
+                        self.repairs.push(Repair { rule, face: k, entity, line: item.line, distance, place });
                     }
                     let words = |doubt: &Doubt| format!("{} at {}{}: {}", item.name, self.mark, item.id, in_words(doubt, self.model_unit));
                     warnings.extend(doubts.iter().map(|doubt| Malformed::line(item.line, words(doubt))));
@@ -83,20 +83,35 @@ impl Part {
 
 impl Face {
     /// The surface values, one for each outer loop, and where the loops do not agree which side is the face; borders may be as far off as
-    /// the file has them: as they were found to be, else what it says that may lie between two points that are one.
+    /// the file has them: as they were found to be, else what it says that may lie between two points that are one. Distances were found at
+    /// places: a closer look finds a border farther off by a hair, or by more between them. What is allowed is doubled until it is enough, up to
+    /// [`SMALL_GAP`] of the size.
     pub fn surfaces(&self, origin: Origin, tolerance: &Tolerance) -> Result<FaceSurfaces, Defect> {
         if let Some(why) = self.beyond_repair(tolerance) {
             return Err(why);
         }
         let found = Tolerance { point: tolerance.point.max(2.0 * self.off.distance), ..*tolerance };
         let stated = Tolerance { point: self.slack, ..*tolerance };
-        let made = |(surfaces, doubts): (Vec<Surface>, Vec<Doubt>), by_accuracy: bool| FaceSurfaces { surfaces, doubts, by_accuracy };
+        let made = |(surfaces, doubts): (Vec<Surface>, Vec<Doubt>), closed_within| FaceSurfaces { surfaces, doubts, closed_within };
         let why = match self.within(origin, &found) {
-            Ok(all) => return Ok(made(all, false)),
+            Ok(all) => return Ok(made(all, None)),
             Err(why) => why,
         };
-        let again = if stated.point > found.point { self.within(origin, &stated).ok() } else { None };
-        again.map(|all| made(all, true)).ok_or(why)
+        if stated.point > found.point
+            && let Ok(all) = self.within(origin, &stated)
+        {
+            return Ok(made(all, Some((self.slack, Rule::Accuracy))));
+        }
+        let most = SMALL_GAP * reach(self.outer.iter().chain(&self.holes)).diagonal();
+        let doubled = std::iter::successors(Some(2.0 * found.point), |wider| Some(2.0 * wider));
+        for point in doubled.take_while(|wider| *wider <= most) {
+            job::poll();
+            if let Ok(all) = self.within(origin, &Tolerance { point, ..*tolerance }) {
+                let rule = if point <= self.slack { Rule::Accuracy } else { Rule::Border };
+                return Ok(made(all, Some((point, rule))));
+            }
+        }
+        Err(why)
     }
 
     /// Why its borders are no borders of its surface: they are off by too large a share of their size.
