@@ -293,6 +293,8 @@ fn mutated_files_never_break_the_reader() {
     let mut files: Vec<Vec<u8>> = facts().into_iter().map(|f| f.1).collect();
     files.extend(entities::all().into_iter().map(|(_, text)| text.into_bytes()));
     let mut random = Random(0x1005_5EED);
+    // What tests before this one took does not count.
+    let _ = std::fs::write("/proc/self/clear_refs", "5");
     let mut read_as_parts = 0;
     for case in 0..cases {
         let bytes = mutated(&files[random.below(files.len())], &mut random);

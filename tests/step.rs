@@ -112,6 +112,8 @@ fn mutated_files_never_break_the_reader() {
     let mut files: Vec<Vec<u8>> = entities::all().into_iter().map(|(_, text)| text.into_bytes()).collect();
     files.push(std::fs::read(folder("step-plate-cylinders/io1-ug-214.stp")).unwrap());
     let mut random = Random(0x0103_0321);
+    // What tests before this one took does not count.
+    let _ = std::fs::write("/proc/self/clear_refs", "5");
     let mut read_as_parts = 0;
     for case in 0..cases {
         let bytes = mutated(&files[random.below(files.len())], &mut random);
