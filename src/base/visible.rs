@@ -22,7 +22,7 @@ pub fn visible(text: &str) -> Cow<'_, str> {
     Cow::Owned(out)
 }
 
-/// A text in a colour of [`COLORS`], or as it is; what steers a terminal is made visible in it.
+/// A text in a colour of `COLORS`, or as it is; what steers a terminal is made visible in it.
 pub fn colored(text: &str, code: &str, color: bool) -> String {
     let text = visible(text);
     if color { format!("\u{1b}[{code}m{text}\u{1b}[0m") } else { text.into_owned() }

@@ -85,7 +85,7 @@ impl Face {
     /// The surface values, one for each outer loop, and where the loops do not agree which side is the face; borders may be as far off as
     /// the file has them: as they were found to be, else what it says that may lie between two points that are one. Distances were found at
     /// places: a closer look finds a border farther off by a hair, or by more between them. What is allowed is doubled until it is enough, up to
-    /// [`SMALL_GAP`] of the size.
+    /// a thousandth of the size.
     pub fn surfaces(&self, origin: Origin, tolerance: &Tolerance) -> Result<FaceSurfaces, Defect> {
         if let Some(why) = self.beyond_repair(tolerance) {
             return Err(why);
