@@ -126,13 +126,14 @@ pub fn in_any_direction(surface: &Surface, uv: [DVec2; 3]) -> f64 {
 /// How far the surface over a triangle of (u, v) may be from the triangle, whichever way it leaves it. The search ends with the first distance
 /// above `wanted`.
 ///
-/// A triangle that stands on edge may keep the surface near its plane and its sides near the surface, and yet lie beside a peak: its normal
-/// does not tell. Over a part of (u, v) the surface is at most as far from the triangle as its corners are, by the distance from a convex
-/// set, and further by what it bends over the part.
+/// A triangle that stands on edge may keep the surface near its plane and its sides near the surface, and yet lie beside a peak: heights over
+/// its plane do not tell. Between three places the surface is at most as far from the triangle as the farthest of them, for the triangle is
+/// convex, and farther by what the surface bends there.
 pub fn beyond(evaluator: Evaluator, uv: [DVec2; 3], p: [DVec3; 3], wanted: f64) -> f64 {
     let off = |at: DVec2| point_triangle::distance(p, evaluator.point(at.x, at.y));
     let mut worst = 0.0_f64;
-    let mut open = vec![(uv, [0.0; 3], SETTINGS.max_parts)];
+    // Border nodes of glued edges lie beside the surface.
+    let mut open = vec![(uv, uv.map(off), SETTINGS.max_parts)];
     while let Some((uv, corners, left)) = open.pop() {
         let far = corners.into_iter().fold(0.0, f64::max);
         let area = (uv[0].min(uv[1]).min(uv[2]), uv[0].max(uv[1]).max(uv[2]));
@@ -145,14 +146,14 @@ pub fn beyond(evaluator: Evaluator, uv: [DVec2; 3], p: [DVec3; 3], wanted: f64) 
             worst = worst.max(bound);
             continue;
         }
-        let [a, b, c] = uv;
-        let middles = [0.5 * (b + c), 0.5 * (c + a), 0.5 * (a + b)];
+        // The middle of the side opposite each corner.
+        let middles = [0, 1, 2].map(|k| 0.5 * (uv[(k + 1) % 3] + uv[(k + 2) % 3]));
         let own = middles.map(off);
-        let [x, y, z] = middles;
         open.push((middles, own, left - 1));
-        open.push(([a, z, y], [corners[0], own[2], own[1]], left - 1));
-        open.push(([z, b, x], [own[2], corners[1], own[0]], left - 1));
-        open.push(([y, x, c], [own[1], own[0], corners[2]], left - 1));
+        for k in 0..3 {
+            let (next, last) = ((k + 1) % 3, (k + 2) % 3);
+            open.push(([uv[k], middles[last], middles[next]], [corners[k], own[last], own[next]], left - 1));
+        }
     }
     worst
 }

@@ -26,6 +26,8 @@ pub struct LimitRatios {
     pub chord: f64,
     /// Turn of the normal over the limit.
     pub angle: f64,
+    /// The triangle stands on edge and the surface may be too far beyond it: by how much does not tell how much smaller it has to be.
+    pub on_edge: bool,
 }
 
 impl LimitRatios {
@@ -122,7 +124,7 @@ fn ratio_of_tilted(chart: &Chart, triangulation: &Triangulation, corners: [u32; 
     // Most triangles that are tried are far too large: some points tell.
     let seen = limits.chord.map_or(0.0, |limit| sampled_chord(chart, triangle) / limit);
     if seen > 1.0 {
-        return LimitRatios { chord: seen / cosine.max(MIN_TILT_COSINE), angle: 0.0 };
+        return LimitRatios { chord: seen / cosine.max(MIN_TILT_COSINE), ..LimitRatios::default() };
     }
     let gap = border_gap(chart, triangulation, corners.map(|n| n as usize), limits);
     let ratio = tilted(chart, triangle, gap, of_places(chart, triangle, gap, limits), cosine, limits);
@@ -237,7 +239,7 @@ fn ratio_with_sides(chart: &Chart, triangulation: &Triangulation, t: u32, limits
         let off = |uv| triangle::beyond(chart.evaluator(), uv, p, limit);
         let beyond = off(first).max(second.map_or(0.0, off)) / limit;
         if beyond > 1.0 {
-            return LimitRatios { chord: beyond, ..found };
+            return LimitRatios { chord: beyond, on_edge: true, ..found };
         }
     }
     let mut ends = poles::sides(&|at| chart.tangents(at.into()), xy.map(|xy| DVec2::from(chart.uv(xy)))).map(Some);
@@ -262,7 +264,7 @@ fn of_places(chart: &Chart, triangle: ChartTriangle, gap: f64, limits: &Limits) 
         let (first, second) = under(&|at| chart.tangents(at.into()), places);
         (triangle::chord(chart.evaluator(), first, second, p, limit - gap) + gap) / limit
     });
-    LimitRatios { chord, angle: turn_ratio(chart, xy, places, limits) }
+    LimitRatios { chord, angle: turn_ratio(chart, xy, places, limits), on_edge: false }
 }
 
 /// The turn of the normals of the surface between three places, in the chart and in (u, v), over the limit.

@@ -303,7 +303,7 @@ impl FaceFit<'_> {
             if over > worst.0 {
                 worst = (over, middle, if ratio.worst() > 1.0 { ratio.limit() } else { MeshLimit::Size });
             }
-            let smaller = (FIT.size_factor / factor).max(0.5);
+            let smaller = if ratio.on_edge { 0.5 } else { (FIT.size_factor / factor).max(0.5) };
             // Lengths that were lowered at single nodes, to divide triangles there, are no lengths of a whole cell of the grid.
             let least = FIT.least_over_side * longest_side(triangulation, t as u32);
             if let Some(background) = &mut field.background {
