@@ -14,7 +14,7 @@ use crate::base::tolerance::Tolerance;
 use crate::network::{Chain, Network, meet};
 use crate::surface::intersect::with_curve::with_curve;
 use crate::surface::intersect::with_surfaces::with_surfaces;
-use crate::surface::{Nearest, Surface, with_loops};
+use crate::surface::{Nearest, with_loops};
 
 /// Curves and points that faces have in common beside the edges that they share.
 #[derive(Clone, Debug, Default)]
@@ -66,14 +66,14 @@ pub(super) fn beside(curve: &Chain, others: &[Chain], tolerance: &Tolerance) -> 
 /// Samples of a curve one of which is on a surface that some of it lies on.
 const SAMPLES: u32 = 64;
 
-/// Arc-length fractions between which a curve lies on a surface, ascending.
+/// Arc-length fractions between which a curve lies on a surface that was made ready, ascending.
 ///
 /// Fails with E413 when the work exceeds its limit.
-pub fn runs_on(curve: &Chain, surface: &Surface, tolerance: &Tolerance) -> Result<Vec<(f64, f64)>> {
+pub fn runs_on(curve: &Chain, nearest: &Nearest, tolerance: &Tolerance) -> Result<Vec<(f64, f64)>> {
+    let surface = nearest.surface();
     if !curve.bbox().touches(&surface.hull(), tolerance.point) {
         return Ok(Vec::new());
     }
-    let nearest = Nearest::new(surface);
     let on = |k: u32| nearest.at(curve.point(f64::from(k) / f64::from(SAMPLES))).distance <= tolerance.point;
     if !(0..=SAMPLES).any(on) {
         return Ok(Vec::new());
@@ -87,12 +87,13 @@ impl Model {
     ///
     /// Fails with E413 when the work exceeds its limit.
     pub fn run_ends(&self, curves: &[&Chain], listed: &[SurfaceId], tolerance: &Tolerance, job: &Job) -> Result<Vec<DVec3>> {
-        let pairs: Vec<(&Chain, SurfaceId)> = curves.iter().flat_map(|curve| listed.iter().map(|s| (*curve, *s))).collect();
+        let ready: Vec<Nearest> = listed.iter().map(|s| Nearest::new(&self.surfaces[s.index()].surface)).collect();
+        let pairs: Vec<(&Chain, &Nearest)> = curves.iter().flat_map(|curve| ready.iter().map(|nearest| (*curve, nearest))).collect();
         let found = par::try_map(pairs.len(), |k| {
             job.go_on()?;
-            let (curve, surface) = pairs[k];
+            let (curve, nearest) = pairs[k];
             let end = tolerance.point / curve.length();
-            let runs = runs_on(curve, &self.surfaces[surface.index()].surface, tolerance)?;
+            let runs = runs_on(curve, nearest, tolerance)?;
             let inside = runs.into_iter().flat_map(|(from, to)| [from, to]).filter(|f| *f > end && *f < 1.0 - end);
             Ok::<Vec<DVec3>, Fault>(inside.map(|f| curve.point(f)).collect())
         })?;

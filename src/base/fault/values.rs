@@ -33,7 +33,7 @@ pub enum ValueFault {
     OffsetTooFar {
         /// The distance, model units.
         found: f64,
-        /// What is allowed.
+        /// The distances that the curve's bends allow.
         range: LengthRange,
         /// About the largest distance that works on this side, model units.
         most: f64,

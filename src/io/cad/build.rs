@@ -103,12 +103,11 @@ impl Face {
             return Ok(made(all, Some((self.slack, Rule::Accuracy))));
         }
         let most = SMALL_GAP * reach(self.outer.iter().chain(&self.holes)).diagonal();
-        let doubled = std::iter::successors(Some(2.0 * found.point), |wider| Some(2.0 * wider));
+        let doubled = std::iter::successors(Some(2.0 * found.point.max(stated.point)), |wider| Some(2.0 * wider));
         for point in doubled.take_while(|wider| *wider <= most) {
             job::poll();
             if let Ok(all) = self.within(origin, &Tolerance { point, ..*tolerance }) {
-                let rule = if point <= self.slack { Rule::Accuracy } else { Rule::Border };
-                return Ok(made(all, Some((point, rule))));
+                return Ok(made(all, Some((point, self.off.rule))));
             }
         }
         Err(why)

@@ -60,7 +60,7 @@ fn mixed(name: &str, file: FileId, at: Span) -> Option<Diagnostic> {
     }))
 }
 
-/// What is mixed in a word.
+/// The letters of the rarer script of a word, where they can be taken for those of the other; `None` for a word of one script.
 fn word(word: &str) -> Option<Mixed> {
     if word.is_ascii() || word.is_single_script() {
         return None;

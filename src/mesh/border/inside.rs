@@ -52,7 +52,7 @@ pub fn place(input: &Input, layout: &mut Layout) {
         // What runs along the border of the face and is none of it has no room beside it.
         let on_rim = |p: &DVec3| rim.iter().any(|part| part.is_near(layout, *p, input.tolerance.point));
         let own = found.into_iter().filter(|n| !probes[*n].iter().all(on_rim)).map(|n| lines[n]);
-        // What leaves the face between the probes is no line of it.
+        // Probes are few: a segment may leave the face between two of them.
         let own = own.filter(|segment| leaving.part(*segment, face.surface, face.near).is_none());
         face.lines.extend(own.collect::<Vec<usize>>());
         face.lines.sort_unstable();

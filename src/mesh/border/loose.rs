@@ -14,6 +14,7 @@ use crate::mesh::request::input::Input;
 use crate::model::SurfaceId;
 use crate::model::imprint::runs_on;
 use crate::model::segments::SegmentUse;
+use crate::surface::Nearest;
 
 /// A curve that lies on a face and shares no nodes with it there.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,7 +31,7 @@ pub struct Loose {
     pub more: usize,
 }
 
-/// What a segment is off the face over less than so many times what counts as one point is no part of it.
+/// A segment that is off a face over a shorter length than this lies on it as a whole; in distances within which two points are one.
 const SHORT: f64 = 16.0;
 
 /// Where the curves of a plan lie on its faces, each found when it is asked for.
@@ -40,13 +41,15 @@ pub struct Leaving<'a> {
     of_segment: BTreeMap<usize, (usize, SegmentUse)>,
     /// Arc lengths between which a curve lies on a surface.
     runs: BTreeMap<(usize, SurfaceId), Vec<(f64, f64)>>,
+    /// The surfaces, ready for nearest points.
+    ready: BTreeMap<SurfaceId, Nearest>,
 }
 
 impl<'a> Leaving<'a> {
     /// Of the curves of a layout.
     pub fn new(input: &'a Input<'a>, layout: &Layout) -> Self {
         let uses = layout.curves.iter().enumerate().flat_map(|(curve, uses)| uses.iter().map(move |u| (u.segment, (curve, *u))));
-        Self { input, of_segment: uses.collect(), runs: BTreeMap::new() }
+        Self { input, of_segment: uses.collect(), runs: BTreeMap::new(), ready: BTreeMap::new() }
     }
 
     /// Of a segment that lies on a surface in part: the length that does, and where it leaves the surface. `near` is what counts as one point.
@@ -54,8 +57,9 @@ impl<'a> Leaving<'a> {
         let (curve, u) = *self.of_segment.get(&segment)?;
         let (input, chain) = (self.input, &self.input.plan.curves[curve].1);
         let runs = self.runs.entry((curve, surface)).or_insert_with(|| {
-            // Where the search finds no end nothing is known.
-            let found = runs_on(chain, &input.model.surfaces[surface.index()].surface, input.tolerance).unwrap_or_default();
+            let nearest = self.ready.entry(surface).or_insert_with(|| Nearest::new(&input.model.surfaces[surface.index()].surface));
+            // Where the search exceeds its limit the curve is left as it is.
+            let found = runs_on(chain, nearest, input.tolerance).unwrap_or_default();
             found.into_iter().map(|(from, to)| (from * chain.length(), to * chain.length())).collect()
         });
         let least = SHORT * near;
@@ -81,7 +85,8 @@ pub fn find(input: &Input, layout: &Layout, leaving: &mut Leaving) -> Option<Loo
         for (id, (own, near)) in &lines {
             let open = uses.iter().filter(|u| !own.contains(&u.segment));
             let parts: Vec<(f64, DVec3)> = open.filter_map(|u| leaving.part(u.segment, *id, *near)).collect();
-            let Some((_, at)) = parts.first().copied() else { continue };
+            let place = input.plan.surfaces.iter().position(|s| s.0 == *id);
+            let (Some((_, at)), Some(surface)) = (parts.first().copied(), place) else { continue };
             match &mut first {
                 Some(found) if found.curve == curve => {}
                 Some(found) => {
@@ -89,7 +94,6 @@ pub fn find(input: &Input, layout: &Layout, leaving: &mut Leaving) -> Option<Loo
                     break;
                 }
                 None => {
-                    let surface = input.plan.surfaces.iter().position(|s| s.0 == *id).unwrap_or(0);
                     let length = parts.iter().map(|part| part.0).sum();
                     first = Some(Loose { curve, surface, length, at, more: 0 });
                 }

@@ -116,7 +116,7 @@ impl PlanHasher<'_> {
     }
 
     fn layout(&self, layout: &Layout, to: &mut StableHasher) {
-        // What is loose follows from the rest.
+        // `loose` is derived from the faces and curves that are hashed here.
         let Layout { faces, parts, pieces, edges, of_link, curves, points, creases, meets, lost, loose: _ } = layout;
         faces.len().hash_into(to);
         faces.iter().for_each(|face| self.face(face, to));

@@ -56,10 +56,15 @@ impl Chart {
         ((xy.x - self.b * v) * self.by.0, v)
     }
 
-    /// How many breaks of the surface, at which it is less than analytic, lie inside the box of an outline along u, and along v.
-    pub fn breaks(&self, outline: &Outline) -> [usize; 2] {
+    /// The box of an outline in the surface's parameters.
+    pub fn box_of(&self, outline: &Outline) -> (DVec2, DVec2) {
         let places = outline.xy.iter().map(|xy| DVec2::from(self.uv(*xy)));
-        let (low, high) = places.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
+        places.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)))
+    }
+
+    /// How many lines of constant u, and of constant v, at which the surface is less than analytic, cross the box of an outline.
+    pub fn breaks(&self, outline: &Outline) -> [usize; 2] {
+        let (low, high) = self.box_of(outline);
         let (us, vs) = self.surface().breaks();
         let inside = |lines: Vec<f64>, low: f64, high: f64| lines.into_iter().filter(|x| low < *x && *x < high).count();
         [inside(us, low.x, high.x), inside(vs, low.y, high.y)]

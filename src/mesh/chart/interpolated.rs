@@ -70,8 +70,7 @@ impl<'a> InterpolatedChart<'a> {
         if nodes < SETTINGS.min_nodes || shortest < SETTINGS.min_step_over_size * size {
             return None;
         }
-        let places = outline.xy.iter().map(|xy| DVec2::from(chart.uv(*xy)));
-        let (low, high) = places.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
+        let (low, high) = chart.box_of(outline);
         let beyond = (-low).max(high - 1.0).max_element();
         let (low, high) = (low.max(DVec2::ZERO), high.min(DVec2::ONE));
         if beyond > WHOLE_NUMBER || (high - low).min_element() <= 0.0 {

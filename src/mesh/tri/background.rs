@@ -27,8 +27,8 @@ pub struct Background {
 impl Background {
     /// A grid over a box of the chart with the length `of` each place; `growth` is the largest ratio of neighbouring edges.
     ///
-    /// The distance of grid lines follows from the mean length, which a first, coarse grid has, and from the `breaks` of the surface along x and
-    /// y: a bump may be as narrow as they are near to each other. Between lines whose lengths differ, or between
+    /// The distance of grid lines follows from the mean length, which a first, coarse grid has, and from the number of `breaks` of the surface
+    /// along x and y, where that counts: a bump may be as narrow as two of them are near. Between lines whose lengths differ, or between
     /// which the surface turns, as at a sharp nose or fold, lines are added until they are as near to each other as the lengths there demand.
     pub fn new(
         chart_surface: &dyn ParametricSurface,

@@ -46,10 +46,8 @@ impl<'a> FoldCheck<'a> {
     fn may_cut_off(&self, uv: [DVec2; 3], allowed: f64) -> bool {
         let FaceFit { surface, chart, outline, longest, .. } = self.fit;
         let tiles = self.tiles.get_or_init(|| {
-            let places = outline.xy.iter().map(|xy| DVec2::from(chart.uv(*xy)));
-            let area = places.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
             let across = outline.area().sqrt() / (longest.inside * SETTINGS.triangles_across_tile);
-            BendTiles::new(surface, area, across.clamp(SETTINGS.tiles.0, SETTINGS.tiles.1) as usize)
+            BendTiles::new(surface, chart.box_of(outline), across.clamp(SETTINGS.tiles.0, SETTINGS.tiles.1) as usize)
         });
         let (low, high) = (uv[0].min(uv[1]).min(uv[2]), uv[0].max(uv[1]).max(uv[2]));
         tiles.lengths((low, high)).is_none_or(|bends| over_sides(&bends, uv, high - low) > allowed)
