@@ -224,8 +224,12 @@ fn tidy(a: &Chain, b: &Chain, mut found: Vec<Meeting>, tolerance: &Tolerance) ->
     found.sort_by(|x, y| x.fa.total_cmp(&y.fa).then(x.fb.total_cmp(&y.fb)));
     let mut out: Vec<Meeting> = Vec::with_capacity(found.len());
     for m in found {
+        // A curve may have a span too short to be found as a part of the overlap.
+        let goes_on = |(fa, fb): (f64, f64)| {
+            m.fa <= fa + REACH * near_a && (m.overlap_end.is_none() && m.fa <= fa + near_a || (m.fb - fb).abs() <= REACH * near_b)
+        };
         if let Some(last) = out.last_mut()
-            && last.overlap_end.is_some_and(|(fa, fb)| m.fa <= fa + near_a && (m.overlap_end.is_none() || (m.fb - fb).abs() <= near_b))
+            && last.overlap_end.is_some_and(goes_on)
         {
             // A point on an overlap adds nothing, an overlap that goes on lengthens it.
             if let (Some(end), Some(more)) = (&mut last.overlap_end, m.overlap_end)

@@ -8,6 +8,9 @@ use crate::geometry::curves::pieces::View;
 use crate::surface::closest::foot::FootSearch;
 use crate::surface::intersect::curve_patch::{Contact, CurveSearch, CurveTouch};
 
+/// What runs along a surface for fewer tolerances than this is no overlap of its own.
+pub(super) const SHORTEST_OVERLAP: f64 = 4.0;
+
 /// The parts of a section that run along a cell.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Near {
@@ -63,7 +66,7 @@ impl CurveSearch<'_> {
             let length = (i..j).map(|k| samples[k].p.distance(samples[k + 1].p)).sum::<f64>();
             let close = longest(&samples, |s| s.gap <= 0.5 * self.point);
             let lies = close.is_some_and(|(i, j)| (i..j).map(|k| samples[k].p.distance(samples[k + 1].p)).sum::<f64>() > self.long);
-            let whole = ended(&samples[i]) && ended(&samples[j]) && length > 4.0 * self.point && (j - i) > 2;
+            let whole = ended(&samples[i]) && ended(&samples[j]) && length > SHORTEST_OVERLAP * self.point && (j - i) > 2;
             if lies || whole && self.is_flat_run(&samples[i..=j]) {
                 let (from, to) = (self.overlap_end(&view, &samples, i, true), self.overlap_end(&view, &samples, j, false));
                 out.push(Contact::Overlap { t: (common(from), common(to)) });

@@ -11,6 +11,8 @@ use crate::surface::trims::project::{self, cubics};
 
 /// Share of the tolerance that a cubic may be off.
 const SHARE: f64 = 0.25;
+/// Places nearer to each other than so many tolerances are one: a march may end just beyond one.
+const SHORTEST: f64 = 4.0;
 
 impl Pair<'_> {
     /// Cubics over the places of a branch, one parameter from each to the next.
@@ -18,7 +20,7 @@ impl Pair<'_> {
     /// Between two places the curve is run over by the planes across their chord, so every point of it is found on both
     /// surfaces by Newton's method.
     pub fn fitted(&self, branch: &Branch, lost: &dyn Fn(DVec3) -> Fault) -> Result<Vec<Nurbs>> {
-        let spots = distinct(&branch.spots, SHARE * self.point);
+        let spots = distinct(&branch.spots, SHORTEST * self.point);
         if spots.len() < 2 {
             return Ok(Vec::new());
         }

@@ -3,6 +3,7 @@
 
 use glam::{DVec2, DVec3};
 
+use crate::base::bbox::Box3;
 use crate::base::fault::Result;
 use crate::base::math;
 use crate::base::tolerance::Tolerance;
@@ -18,8 +19,8 @@ use crate::surface::trims::trim_loop::shifts;
 
 /// Places at which a border is compared with the other face, before it is followed.
 const PROBES: [f64; 5] = [0.03, 0.27, 0.4873, 0.74, 0.97];
-/// Faces cross along a border where they do so at this angle at least, radians.
-const CROSSING: f64 = 0.05;
+/// Faces cross along a border where they do so at this angle at least, radians. Below it they go on into each other.
+const CROSSING: f64 = 1.0 / 256.0;
 /// Steps of a border between two breaks.
 const STEPS: usize = 32;
 /// Steps of a border in all where it has many breaks, and steps between two of them at the least.
@@ -72,6 +73,13 @@ impl KnownCurve {
             }
         }
         Ok(found)
+    }
+
+    /// Whether faces that cross in a place at an angle of this sine cross in this curve there: it is within the tolerance `point` of both, and
+    /// so within twice that over the sine of where they cross. No farther than `most`.
+    pub fn is_at(&self, p: DVec3, sine: f64, point: f64, most: f64) -> bool {
+        let room = most.min(2.0 * point / sine);
+        self.chain.bbox().touches(&Box3::of([p]), room) && self.chain.closest(p).2 <= room
     }
 
     fn runs_along(&self, chain: &Chain, tolerance: &Tolerance) -> bool {

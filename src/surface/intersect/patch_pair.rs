@@ -158,6 +158,9 @@ impl PairSearch<'_> {
         let pair = Pair { a: &self.a.patch, b: &self.b.patch, point: self.point };
         let Some(spot) = pair.correct(x.middle(), y.middle(), None) else { return Ok(false) };
         let Some(spot) = inside(&pair, x, y, spot) else { return Ok(false) };
+        if self.known.iter().any(|known| known.is_at(spot.p, spot.sine, self.point, self.long)) {
+            return Ok(true);
+        }
         if !self.common.branches.iter().any(|branch| pair.passes(branch, &spot)) {
             match pair.march(spot, self.size) {
                 Ok(branch) => self.common.branches.push(branch),

@@ -17,6 +17,7 @@ use crate::surface::closest::nearest::{Nearest, closest};
 use crate::surface::core::surface::Surface;
 use crate::surface::data::kind::Domain;
 use crate::surface::intersect::coplanar::is_flat;
+use crate::surface::intersect::curve_overlap::SHORTEST_OVERLAP;
 use crate::surface::intersect::curve_patch::{Contact, CurveTouch, contacts};
 use crate::surface::intersect::sheet::{Patch, Sheet, grounded, patches};
 use crate::surface::rails::side::Side;
@@ -83,7 +84,7 @@ fn with_one(chain: &Chain, surface: &Surface, tolerance: &Tolerance) -> Result<V
     };
     let near = tolerance.point / length;
     let mut out = Vec::new();
-    for (from, to) in kept_intervals(chain, surface, united(overlaps, near), tolerance)? {
+    for (from, to) in kept_intervals(chain, surface, united(overlaps, &points, near), tolerance)? {
         let uv = closest(surface, chain.point(from)).uv;
         out.push(SurfaceMeeting { point: chain.point(from), f: from, uv, overlap_end: Some(to) });
     }
@@ -190,15 +191,30 @@ fn on_patch(curve: &Curve, patch: Patch, tolerance: &Tolerance) -> Result<Vec<Co
     })
 }
 
-/// Overlaps that touch or share a part as one, ascending.
-fn united(mut overlaps: Vec<(f64, f64)>, near: f64) -> Vec<(f64, f64)> {
+/// Overlaps that touch or share a part as one, ascending. What is between two, or between one and an end of the curve that is on the
+/// surface, and no longer than the shortest overlap is part of it: a curve may have a span as short as that.
+fn united(mut overlaps: Vec<Stretch>, points: &[CurveTouch], near: f64) -> Vec<Stretch> {
+    let short = SHORTEST_OVERLAP * near;
     overlaps.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut out: Vec<(f64, f64)> = Vec::new();
+    let mut out: Vec<Stretch> = Vec::new();
     for (from, to) in overlaps {
         match out.last_mut() {
-            Some(last) if from <= last.1 + near => last.1 = last.1.max(to),
+            Some(last) if from <= last.1 + short => last.1 = last.1.max(to),
             _ => out.push((from, to)),
         }
+    }
+    let touched = |end: f64| points.iter().any(|touch| (touch.t - end).abs() <= near);
+    if let Some(first) = out.first_mut()
+        && first.0 <= short
+        && touched(0.0)
+    {
+        first.0 = 0.0;
+    }
+    if let Some(last) = out.last_mut()
+        && last.1 >= 1.0 - short
+        && touched(1.0)
+    {
+        last.1 = 1.0;
     }
     out
 }
