@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3};
 
+use crate::base::bbox::Box3;
 use crate::base::fault::Result;
 use crate::base::job;
 use crate::base::origin::Origin;
@@ -50,19 +51,38 @@ const VERTICES: Vertices = Vertices {
 
 /// Divides a surface by curves on it, together with its own border, and keeps the part with a point.
 ///
-/// Curves may run on beyond each other and beyond the border; what hangs loose cuts nothing. E613 when a curve is not on the
-/// surface, E659 when one of them cuts nothing off, E660 when the point is not on the surface, or on a cut.
+/// Curves may run on beyond each other and beyond the border; what hangs loose cuts nothing. A point on a border, or hardly off the surface,
+/// stands for the only part within [`KEEP_SHARE`] of the surface's size. E613 when a curve is not on the surface, E659 when one of them cuts
+/// nothing off, E660 when there is no such part, or several.
 pub fn divide(base: &Surface, cutters: &[Chain], keep: DVec3, origin: Origin, tolerance: &Tolerance) -> Result<Surface> {
     let base = &plane::unmapped(base, tolerance)?;
-    let foot = foot_of(base, cutters, keep, tolerance)?;
+    let foot = foot_of(base, cutters, keep, tolerance);
     let dividing = dividing(base, cutters, Meets::Anywhere, tolerance)?;
     let cells = Cells::new(base, &dividing.pieces, &dividing.edges, tolerance)?;
     undivided(base, &dividing, cells.faces()?.len(), tolerance)?;
-    let Some(face) = cells.face(foot)? else {
-        return Err(CutFault::KeepOff { surface: base.origin(), at: keep, off: 0.0, on: None, tolerance: tolerance.point }.into());
+    let fault = match foot {
+        Ok(foot) => match cells.face(foot)? {
+            Some(face) => return assembled(base, trim_loops(&dividing.pieces, &face), origin),
+            None => CutFault::KeepOff { surface: base.origin(), at: keep, off: 0.0, on: None, tolerance: tolerance.point }.into(),
+        },
+        Err(fault) => fault,
     };
-    assembled(base, trim_loops(&dividing.pieces, &face), origin)
+    if base.ground() == Domain::Unbounded {
+        return Err(fault);
+    }
+    let room = KEEP_SHARE * base.hull().diagonal();
+    let mut near = Vec::new();
+    for face in cells.faces()? {
+        let part = assembled(base, trim_loops(&dividing.pieces, &face), origin)?;
+        if part.hull().touches(&Box3::of([keep]), room) && closest(&part, keep).distance <= room {
+            near.push(part);
+        }
+    }
+    if near.len() == 1 { near.pop().ok_or(fault) } else { Err(fault) }
 }
+
+/// Share of the size of a surface within which a point beside a part stands for that part.
+const KEEP_SHARE: f64 = 1e-3;
 
 /// All parts into which curves on a surface divide it, together with its own border; fails as [`divide`] does.
 pub fn split(whole: &Surface, cutters: &[Chain], origin: Origin, tolerance: &Tolerance) -> Result<Vec<Surface>> {

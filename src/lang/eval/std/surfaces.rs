@@ -164,7 +164,7 @@ builtins! {
     ///
     /// Curves of a loop come in any order and direction and must lie on the surface within the tolerance. Without `outer:`
     /// the surface's own border is the outer loop. `by:` takes curves on the surface, or surfaces that it meets, which
-    /// divide it from border to border or in closed loops; the part with the point `keep:` stays (`split` has all of them).
+    /// divide it from border to border or in closed loops; the part with the point `keep:` stays, or the only part near it (`split` has all of them).
     /// Holes lie apart from each other and inside the outer loop, or touch in one point; those that the surface has stay.
     /// ```loft
     /// curve rim = circle(center: (0, 0, 0), radius: 1m)
