@@ -30,9 +30,9 @@ const WITHIN: f64 = 1.0 / 64.0;
 const ALONG: f64 = 16.0;
 
 /// Points p with w·p ≥ c.
-struct HalfSpace {
-    inward: DVec3,
-    height: f64,
+pub(super) struct HalfSpace {
+    pub inward: DVec3,
+    pub height: f64,
 }
 
 impl HalfSpace {
@@ -66,7 +66,7 @@ pub(crate) fn flat_and_extruded(faces: [&Surface; 2], boxes: [Box3; 2], origin: 
 }
 
 /// A curve in the direction in which the normal of the first face crosses that of the second one, as curves that are searched for run.
-fn directed(curve: Curve, faces: [&Surface; 2], plane: &Flat, flat_first: bool) -> Curve {
+pub(super) fn directed(curve: Curve, faces: [&Surface; 2], plane: &Flat, flat_first: bool) -> Curve {
     let (from, to) = curve.domain();
     let jet = curve.jet(0.5 * (from + to));
     let bent = faces[usize::from(flat_first)].untrimmed();
@@ -150,14 +150,14 @@ fn section(
 }
 
 /// The half spaces that bound a flat face that is a parallelogram.
-fn sides(face: &Surface, plane: &Flat) -> Vec<HalfSpace> {
+pub(super) fn sides(face: &Surface, plane: &Flat) -> Vec<HalfSpace> {
     let all = plane.sides().into_iter().map(|(inward, p)| HalfSpace { inward, height: inward.dot(p) });
     if face.domain() == Domain::Square { all.collect() } else { Vec::new() }
 }
 
 /// The intervals of a chain inside half spaces, ascending; the first of a closed chain may begin before its start. `None` where the chain
 /// runs along the border of one.
-fn kept(chain: &Chain, spaces: &[HalfSpace], tolerance: &Tolerance) -> Result<Option<Vec<(f64, f64)>>> {
+pub(super) fn kept(chain: &Chain, spaces: &[HalfSpace], tolerance: &Tolerance) -> Result<Option<Vec<(f64, f64)>>> {
     let mut cuts = vec![0.0, 1.0];
     for space in spaces {
         let Some(more) = stops(chain, space, tolerance)? else { return Ok(None) };
@@ -185,7 +185,7 @@ fn kept(chain: &Chain, spaces: &[HalfSpace], tolerance: &Tolerance) -> Result<Op
 }
 
 /// Where a chain meets the border of a half space, by its fractions; `None` where it runs along it.
-fn stops(chain: &Chain, space: &HalfSpace, tolerance: &Tolerance) -> Result<Option<Vec<f64>>> {
+pub(super) fn stops(chain: &Chain, space: &HalfSpace, tolerance: &Tolerance) -> Result<Option<Vec<f64>>> {
     let length = space.inward.length();
     let bounds = chain.bbox();
     let reach = 0.5 * (bounds.max - bounds.min).dot(space.inward.abs());

@@ -13,6 +13,7 @@ pub mod march;
 pub mod pair;
 pub mod patch_pair;
 pub mod planes;
+pub mod revolved;
 pub mod self_intersection;
 pub mod sheet;
 pub mod with_curve;

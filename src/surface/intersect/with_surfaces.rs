@@ -24,6 +24,7 @@ use crate::surface::intersect::known_curves::KnownCurve;
 use crate::surface::intersect::pair::Pair;
 use crate::surface::intersect::patch_pair::{Stopped, common};
 use crate::surface::intersect::planes::flat_faces;
+use crate::surface::intersect::revolved::flat_and_revolved;
 use crate::surface::intersect::sheet::{Sheet, patches, widely_grounded};
 use crate::surface::intersect::with_curve::{kept_intervals, long};
 use crate::surface::trims::trim::over_frame;
@@ -93,11 +94,8 @@ fn of_two(a: &Surface, b: &Surface, origin: Origin, tolerance: &Tolerance) -> Re
     if !box_a.touches(&box_b, tolerance.point) {
         return Ok((Vec::new(), Vec::new()));
     }
-    let closed_form = match flat_faces([a, b], [box_a, box_b], origin, tolerance)? {
-        None => flat_and_extruded([a, b], [box_a, box_b], origin, tolerance)?,
-        found => found,
-    };
-    if let Some(lines) = closed_form {
+    for closed_form in [flat_faces, flat_and_extruded, flat_and_revolved] {
+        let Some(lines) = closed_form([a, b], [box_a, box_b], origin, tolerance)? else { continue };
         let mut kept = Vec::new();
         for line in lines.curves {
             kept.extend(kept_parts(line, [a, b], tolerance)?);
