@@ -226,7 +226,16 @@ pub fn check_section(section: &Chain, station: &Station, law: Law, others: (&Cha
     }
     let (off, at) = worst;
     let angle = math::atan2(off, (at - station.at).length_squared().sqrt().max(off));
-    if off <= tolerance.point || (!matches!(law, Law::Rotational(_)) && angle <= tolerance.angle) {
+    // The station is where the guide says, which the section touches within the tolerance only; farther from an axis that is more.
+    let farther = match law {
+        Law::Rotational(axis) => {
+            let radius = |p: DVec3| (p - axis.about).reject_from_normalized(axis.direction).length();
+            (radius(at) / radius(station.at).max(tolerance.point)).max(1.0)
+        }
+        _ => 1.0,
+    };
+    let touched = section.closest(station.at).2.min(tolerance.point);
+    if off <= tolerance.point + touched * farther || (!matches!(law, Law::Rotational(_)) && angle <= tolerance.angle) {
         return Ok(());
     }
     let section = section.origin();

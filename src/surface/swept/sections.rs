@@ -120,7 +120,7 @@ impl Section {
                 [] => return Ok(Err(j)),
                 [one] => {
                     let (fa, fb) = sharpened(chain, &guide.chain, (one.fa, one.fb));
-                    anchors.push(snapped(fa, chain, tolerance));
+                    anchors.push(on_break(snapped(fa, chain, tolerance), chain, tolerance));
                     on_guides.push(snapped(fb, &guide.chain, tolerance));
                 }
                 [one, two, ..] => {
@@ -195,6 +195,13 @@ fn snapped(f: f64, chain: &Chain, tolerance: &Tolerance) -> f64 {
     } else {
         f
     }
+}
+
+/// A fraction within a tolerance of a break of a curve is that break: nothing is cut off between the two.
+fn on_break(f: f64, chain: &Chain, tolerance: &Tolerance) -> f64 {
+    let near = tolerance.point / chain.length();
+    let breaks = chain_breaks(chain).into_iter().filter(|b| (b - f).abs() <= near);
+    breaks.min_by(|a, b| (a - f).abs().total_cmp(&(b - f).abs())).unwrap_or(f)
 }
 
 /// E640: a section that touches a guide nowhere.

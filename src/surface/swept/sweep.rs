@@ -25,7 +25,7 @@ use crate::surface::swept::laws::Law;
 use crate::surface::swept::sections::Guide;
 use crate::surface::swept::single::single;
 use crate::surface::swept::sweep_input::{Input, NetMethod};
-use crate::surface::swept::sweep_net::{SweepNet, net};
+use crate::surface::swept::sweep_net::{Rib, SweepNet, net};
 
 /// The surface through all sections and guides; u runs along the main guide, v along the sections. With notes and warnings.
 ///
@@ -224,8 +224,13 @@ fn through(net: &SweepNet, place: usize, nodes: &[f64], origin: Origin, toleranc
 /// The surface holds every section and guide, to [`NEAREST`] of its size and what they miss each other by; E413 else.
 fn contains(surface: &Surface, net: &SweepNet, tolerance: &Tolerance) -> Result<()> {
     const PLACES: usize = 24;
+    /// Where guides lie close together beside a wide gap, splines across them take what they miss the sections by so many times.
+    const AMPLIFIED: f64 = 64.0;
     let size = surface.hull().diagonal();
-    let allowed = NEAREST * size + tolerance.point;
+    let anchors = || net.order.iter().zip(&net.places).flat_map(|(j, place)| net.ribs.iter().map(move |rib| (*j, *place, rib)));
+    let miss =
+        |(j, place, rib): (usize, usize, &Rib)| net.guides[j].chain.point(rib.on_guides[j]).distance(rib.chain.point(rib.breaks[place]));
+    let allowed = NEAREST * size + tolerance.point + AMPLIFIED * anchors().map(miss).fold(0.0, f64::max);
     let (us, vs) = (net.ribs.iter().map(|r| r.w), net.places.iter().map(|k| net.breaks[*k]));
     let far = |p: DVec3, q: DVec3| p.distance(q) > allowed;
     let fault =
