@@ -44,6 +44,8 @@ impl Dim {
     pub const AREA: Self = Self { length: 2, ..Self::NONE };
     /// A volume.
     pub const VOLUME: Self = Self { length: 3, ..Self::NONE };
+    /// A curvature.
+    pub const CURVATURE: Self = Self { length: -1, ..Self::NONE };
     /// An angle.
     pub const ANGLE: Self = Self { angle: 1, ..Self::NONE };
     /// A mass.

@@ -2,6 +2,7 @@
 
 pub mod as_net;
 pub mod elementary;
+pub mod fairness;
 pub mod iso;
 pub mod iso_fit;
 pub mod iso_line;

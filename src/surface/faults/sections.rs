@@ -55,6 +55,17 @@ pub enum SectionFault {
         /// Where, on the section.
         at: DVec3,
     },
+    /// W645: a station bends to and fro more often than the sections around it.
+    Ripples {
+        /// The surface.
+        surface: Origin,
+        /// Inflections of the station.
+        inflections: usize,
+        /// The most that a section beside it has.
+        given: usize,
+        /// The first of them.
+        at: DVec3,
+    },
     /// W644: a section was scaled by much to touch its guides.
     Scaled {
         /// The section.
@@ -67,7 +78,7 @@ pub enum SectionFault {
 }
 
 impl Describe for SectionFault {
-    codes! { NotParallel "E631", AxisOff "E632", NotNormal "E633", MissesGuide "E640", Scaled "W644" }
+    codes! { NotParallel "E631", AxisOff "E632", NotNormal "E633", MissesGuide "E640", Ripples "W645", Scaled "W644" }
 
     fn describe(&self, say: &dyn Say) -> Report {
         match self {
@@ -120,6 +131,15 @@ impl Describe for SectionFault {
             .at(*section, "must touch every guide")
             .at(*guide, "is not touched")
             .help("draw one of them through a point of the other, or leave this guide out of `guides:`"),
+            Self::Ripples { surface, inflections, given, at } => Report::new(format!(
+                "a station of {} has {}, the sections around it have {}",
+                say.quoted(*surface, "a sweep"),
+                inflections_of(*inflections),
+                inflections_of(*given)
+            ))
+            .at(*surface, "made here")
+            .note(format!("the first is at {}", say.point(*at)))
+            .help("`report fairness(…)` lists all stations; move the guides there, or leave one out"),
             Self::Scaled { section, scale, at } => Report::new(format!(
                 "{} is scaled by {} to touch its guides at {}",
                 say.quoted(*section, "a section"),
@@ -129,6 +149,14 @@ impl Describe for SectionFault {
             .at(*section, "the nearest section to that station")
             .help("add a section there"),
         }
+    }
+}
+
+fn inflections_of(n: usize) -> String {
+    match n {
+        0 => "none".to_owned(),
+        1 => "1 inflection".to_owned(),
+        n => format!("{n} inflections"),
     }
 }
 

@@ -7,7 +7,7 @@ use glam::{DMat3, DVec3, DVec4};
 use crate::base::fault::Result;
 use crate::base::job;
 use crate::base::origin::Origin;
-use crate::base::tolerance::{EPSILON, NEAREST, Tolerance};
+use crate::base::tolerance::{NEAREST, Tolerance};
 use crate::geometry::curves::curve::Shape;
 use crate::geometry::data::fault::CurveFault;
 use crate::geometry::shapes::nurbs::{projected, weighted};
@@ -15,6 +15,7 @@ use crate::geometry::shapes::nurbs_edit::Bezier;
 use crate::geometry::{Curve, Kind, Nurbs};
 use crate::network::Chain;
 use crate::surface::data::breaks::chain_breaks;
+use crate::surface::swept::displacement::Displacement;
 
 /// Pieces of a smooth part of a section, at most.
 const MOST: usize = 1 << 10;
@@ -24,7 +25,7 @@ const WIDENED: usize = 32;
 /// A section as pieces between common breaks: homogeneous Bézier points, all of one degree.
 pub type Pieces = Vec<Vec<DVec4>>;
 
-/// The map that takes a section's anchors to those of a station.
+/// The map that takes a section's anchors to those of a station: a turn, a scale λ and, along the section, what is left at the anchors.
 pub struct Deformation {
     turn: DMat3,
     from: DVec3,
@@ -32,124 +33,40 @@ pub struct Deformation {
     centres: (DVec3, DVec3),
     /// λ.
     pub scale: f64,
-    /// What is left at the anchors, with their section parameters.
-    rest: Vec<(f64, DVec3)>,
+    /// What is left at the anchors.
+    rest: Vec<DVec3>,
 }
 
 impl Deformation {
-    /// From anchors (parameter of the section, point) to their targets, after a turn about the first one.
-    pub fn new(anchors: &[(f64, DVec3)], targets: &[DVec3], turn: DMat3, tolerance: &Tolerance) -> Self {
-        let (from, to) = (anchors[0].1, targets[0]);
-        let moved: Vec<DVec3> = anchors.iter().map(|a| to + turn * (a.1 - from)).collect();
+    /// From anchors to their targets, after a turn about the first one.
+    pub fn new(anchors: &[DVec3], targets: &[DVec3], turn: DMat3, tolerance: &Tolerance) -> Self {
+        let (from, to) = (anchors[0], targets[0]);
+        let moved: Vec<DVec3> = anchors.iter().map(|a| to + turn * (*a - from)).collect();
         let n = targets.len() as f64;
         let centres = (moved.iter().sum::<DVec3>() / n, targets.iter().sum::<DVec3>() / n);
         let mean = |points: &[DVec3], c: DVec3| points.iter().map(|p| p.distance(c)).sum::<f64>() / n;
         let (before, after) = (mean(&moved, centres.0), mean(targets, centres.1));
         let scale = if targets.len() == 1 || before <= tolerance.point { 1.0 } else { after / before };
-        let left = |(k, q): (usize, &DVec3)| (anchors[k].0, *q - (centres.1 + (moved[k] - centres.0) * scale));
+        let left = |(k, q): (usize, &DVec3)| *q - (centres.1 + (moved[k] - centres.0) * scale);
         let rest = targets.iter().enumerate().map(left).collect();
         Self { turn, from, to, centres, scale, rest }
     }
 
-    /// The same for a closed section: what is left at the first anchor is left again at the end.
-    pub fn closing(mut self) -> Self {
-        let first = self.rest[0].1;
-        self.rest.push((1.0, first));
-        self
-    }
-
-    /// What is left over at a parameter of the section.
-    fn rest(&self, t: f64) -> DVec3 {
-        let k = self.rest.partition_point(|r| r.0 <= t);
-        if k == 0 || k == self.rest.len() {
-            return self.rest[k.saturating_sub(1)].1;
-        }
-        let ((t0, before), (t1, after)) = (self.rest[k - 1], self.rest[k]);
-        let y = (t - t0) / (t1 - t0);
-        let b = y * y * (3.0 - 2.0 * y);
-        before * (1.0 - b) + after * b
-    }
-
-    /// A point of the section that moves with what is left over at a parameter.
-    pub fn point(&self, p: DVec3, t: f64) -> DVec3 {
+    /// A point of the section, without what is left at the anchors.
+    fn carried(&self, p: DVec3) -> DVec3 {
         let moved = self.to + self.turn * (p - self.from);
-        self.centres.1 + (moved - self.centres.0) * self.scale + self.rest(t)
+        self.centres.1 + (moved - self.centres.0) * self.scale
     }
 
-    /// All pieces; `breaks` are the section's parameters at their ends.
-    pub fn pieces(&self, pieces: &Pieces, breaks: &[f64]) -> Pieces {
-        pieces.iter().zip(breaks.windows(2)).map(|(piece, w)| self.piece(piece, (w[0], w[1]))).collect()
-    }
-
-    fn piece(&self, piece: &[DVec4], (t0, t1): (f64, f64)) -> Vec<DVec4> {
-        let degree = piece.len() - 1;
-        let points: Vec<DVec3> = piece.iter().map(|q| projected(*q)).collect();
-        let ends = (self.point(points[0], t0), self.point(points[degree], t1));
-        let way = points[degree] - points[0];
-        let share = |p: DVec3| if way == DVec3::ZERO { 0.0 } else { (p - points[0]).dot(way) / way.length_squared() };
-        let straight = points.iter().all(|p| (*p - points[0] - way * share(*p)).length() <= EPSILON * way.length());
-        let moved = |i: usize| -> DVec3 {
-            let p = points[i];
-            if i == 0 {
-                ends.0
-            } else if i == degree {
-                ends.1
-            } else if straight {
-                ends.0 + (ends.1 - ends.0) * share(p)
-            } else if 2 * i < degree {
-                self.point(p, t0)
-            } else if 2 * i > degree {
-                self.point(p, t1)
-            } else {
-                0.5 * (self.point(p, t0) + self.point(p, t1))
-            }
+    /// All pieces; `along` says how a displacement of the anchors goes on along the section.
+    pub(super) fn pieces(&self, pieces: &Pieces, along: &Displacement) -> Pieces {
+        let of = |(k, piece): (usize, &Vec<DVec4>)| {
+            let mut made: Vec<DVec4> = piece.iter().map(|q| weighted(self.carried(projected(*q)), q.w)).collect();
+            along.apply(k, &mut made, &self.rest, piece);
+            made
         };
-        (0..=degree).map(|i| weighted(moved(i), piece[i].w)).collect()
+        pieces.iter().enumerate().map(of).collect()
     }
-}
-
-/// (1 − β) A + β B with β = 3x² − 2x³, piece by piece; smooth where both are.
-pub fn blended(a: &Pieces, b: &Pieces, x: f64, closed: bool, tolerance: &Tolerance) -> Pieces {
-    let beta = x * x * (3.0 - 2.0 * x);
-    let mixed = |(p, q): (&DVec4, &DVec4)| *p * (1.0 - beta) + *q * beta;
-    let mut made: Pieces = a.iter().zip(b).map(|(p, q)| p.iter().zip(q).map(mixed).collect()).collect();
-    let n = made.len();
-    for k in 0..n {
-        let next = (k + 1) % n;
-        if next == 0 && !closed {
-            break;
-        }
-        let smooth = |pieces: &Pieces| {
-            let (before, after) = handles(&pieces[k], &pieces[next]);
-            !tolerance.is_kink(before, after)
-        };
-        if smooth(a) && smooth(b) {
-            straighten(&mut made, (k, next));
-        }
-    }
-    made
-}
-
-/// Ways to the joint of two pieces and from it, between Bézier points.
-fn handles(before: &[DVec4], after: &[DVec4]) -> (DVec3, DVec3) {
-    let last = before.len() - 1;
-    let joint = projected(before[last]);
-    (joint - projected(before[last - 1]), projected(after[1]) - joint)
-}
-
-/// Turns both handles of a joint into their common direction, as long as they are: blends of two smooth curves whose speeds
-/// jump in different ratios need not be smooth.
-fn straighten(pieces: &mut Pieces, (k, next): (usize, usize)) {
-    let (before, after) = handles(&pieces[k], &pieces[next]);
-    let way = (before + after).normalize_or_zero();
-    if way == DVec3::ZERO {
-        return;
-    }
-    let last = pieces[k].len() - 1;
-    let joint = projected(pieces[k][last]);
-    let w = (pieces[k][last - 1].w, pieces[next][1].w);
-    pieces[k][last - 1] = weighted(joint - way * before.length(), w.0);
-    pieces[next][1] = weighted(joint + way * after.length(), w.1);
 }
 
 /// Pieces in a row as one curve, and the fractions of its length at their ends.
@@ -249,29 +166,12 @@ mod tests {
     #[test]
     fn the_reference_section_is_deformed_as_it_should_be() {
         let knots = [(0.0, 0.0, 0.0), (1.0, 1.5, 0.0), (2.0, 2.0, 0.0), (3.0, 1.5, 0.0), (4.0, 0.0, 0.0)].map(DVec3::from);
-        let t = [0.0, 0.3086088907313406, 0.5, 0.6913911092686593, 1.0];
         let targets = [(0.0, 0.0, 0.0), (2.5, 3.0, 0.2), (5.0, 0.5, 0.0)].map(DVec3::from);
-        let anchors = [0, 2, 4].map(|k| (t[k], knots[k]));
-        let found = Deformation::new(&anchors, &targets, DMat3::IDENTITY, &Tolerance::new(1e-6, 5.0));
+        let found = Deformation::new(&[0, 2, 4].map(|k| knots[k]), &targets, DMat3::IDENTITY, &Tolerance::new(1e-6, 5.0));
         assert!((found.scale - 1.2948486617878667).abs() < 1e-12, "{}", found.scale);
-        let wanted = [
-            (0.0, 0.0, 0.0),
-            (1.2345177463178878, 2.2182448400196786, 0.13452110512314291),
-            (2.5, 3.0, 0.2),
-            (3.765482253682112, 2.3819420772118214, 0.13452110512314294),
-            (5.0, 0.5, 0.0),
-        ];
-        for k in 0..5 {
-            assert!(found.point(knots[k], t[k]).distance(wanted[k].into()) < 1e-12, "{k}");
-        }
-    }
-
-    #[test]
-    fn blends_take_three_squares_less_two_cubes() {
-        let piece = |y: f64| vec![vec![DVec4::new(0.0, y, 0.0, 1.0); 4]];
-        let tolerance = Tolerance::new(1e-6, 5.0);
-        for (x, share) in [(0.25, 0.15625), (0.5, 0.5), (0.75, 0.84375)] {
-            assert_eq!(blended(&piece(0.0), &piece(1.0), x, false, &tolerance)[0][0].y, share);
+        let rest = [(0.08969732357573346, -0.3034342254747556, -0.06666666666666667), (0.0, 0.10686845094951103, 0.13333333333333336)];
+        for (k, wanted) in rest.into_iter().enumerate() {
+            assert!(found.rest[k].distance(wanted.into()) < 1e-12, "{k}");
         }
     }
 }

@@ -1,7 +1,9 @@
 //! Surfaces of profiles in motion: extruded, revolved, along a path, along guides by a law.
 
 pub mod along;
+mod blend;
 pub mod deform;
+mod displacement;
 pub mod extrude;
 pub mod frame;
 pub mod laws;

@@ -7,8 +7,11 @@ use crate::base::job;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::network::Chain;
+use crate::surface::data::bends::inflections;
 use crate::surface::faults::{SectionFault, SweepFault};
+use crate::surface::swept::blend::{self, Copy};
 use crate::surface::swept::deform::{self, Deformation, Pieces};
+use crate::surface::swept::displacement::{Course, Displacement};
 use crate::surface::swept::laws::{Law, Main, samples};
 use crate::surface::swept::marks::Marks;
 use crate::surface::swept::sections::Section;
@@ -30,6 +33,8 @@ pub(super) struct Given<'a> {
 /// and by descending fractions.
 struct Cut {
     pieces: Vec<Pieces>,
+    courses: Vec<Course>,
+    along: Vec<Displacement>,
     turns: Vec<[Vec<DMat3>; 2]>,
 }
 
@@ -47,6 +52,7 @@ impl Given<'_> {
             let (chain, breaks) = deform::curve(&found, self.origin);
             made.ribs.push(Rib { w, on_guides, chain, breaks });
         }
+        made.notes.extend(ripples(&made.ribs, self.sections, self.origin));
         if self.law == Law::Normal {
             made.notes.extend(crossing(&made.ribs, main.chain, self.origin));
         }
@@ -62,6 +68,11 @@ impl Given<'_> {
             }
             deform::level(&mut pieces);
         }
+        let closed = made.closed.1;
+        let courses: Vec<Course> =
+            pieces.iter().zip(&self.marks.rows).map(|(section, row)| Course::new(section, row, closed, self.tolerance)).collect();
+        let along = |(section, course)| Displacement::new(section, course, &self.marks.places, closed);
+        let along = pieces.iter().zip(&courses).map(along).collect();
         let divided = Divided { guides: &made.guides, sections: self.sections };
         let returns = made.closed.0 && self.sections.len() == 1;
         let turns = match self.law {
@@ -71,17 +82,29 @@ impl Given<'_> {
             }
             _ => Vec::new(),
         };
-        Ok(Cut { pieces, turns })
+        Ok(Cut { pieces, courses, along, turns })
     }
 
-    /// The given sections nearest to a fraction of the main guide, one or two.
-    fn neighbours(&self, w: f64, closed: bool) -> Vec<usize> {
+    /// The given sections that decide what is at a fraction of the main guide, two on either side at most, with their fractions in ascending
+    /// order; and which of them is the last before it, when there is one on either side.
+    fn neighbours(&self, w: f64, closed: bool) -> (Vec<(usize, f64)>, Option<usize>) {
         let n = self.sections.len();
-        match (self.sections.partition_point(|s| s.on_guides[0] < w), closed) {
-            (after, true) if n > 1 => vec![(after + n - 1) % n, after % n],
-            (0, _) => vec![0],
-            (k, _) if k == n => vec![n - 1],
-            (k, _) => vec![k - 1, k],
+        let after = self.sections.partition_point(|s| s.on_guides[0] < w);
+        if closed && n > 1 {
+            let at = |step: usize| {
+                let place = after + n + step - 2;
+                (place % n, self.sections[place % n].on_guides[0] + (place / n) as f64 - 1.0)
+            };
+            return ((0..4).map(at).collect(), Some(1));
+        }
+        let known = |k: usize| (k, self.sections[k].on_guides[0]);
+        match after {
+            0 => (vec![known(0)], None),
+            k if k == n => (vec![known(n - 1)], None),
+            k => {
+                let first = k.saturating_sub(2);
+                ((first..(k + 2).min(n)).map(known).collect(), Some(k - 1 - first))
+            }
         }
     }
 
@@ -89,40 +112,56 @@ impl Given<'_> {
     fn between(&self, made: &mut SweepNet, cut: &Cut, place: usize, w: f64, on_guides: &[f64], main: &mut Main) -> Pieces {
         let station = main.station(w);
         let targets: Vec<DVec3> = made.order.iter().map(|&j| made.guides[j].chain.point(on_guides[j])).collect();
-        let neighbours = self.neighbours(w, made.closed.0);
-        let mut copies = Vec::with_capacity(2);
-        for (nth, &k) in neighbours.iter().enumerate() {
+        let (neighbours, before) = self.neighbours(w, made.closed.0);
+        let mut copies = Vec::with_capacity(neighbours.len());
+        for (nth, (k, given)) in neighbours.into_iter().enumerate() {
             let section = &self.sections[k];
-            let anchors: Vec<(f64, DVec3)> = made.order.iter().map(|&j| (section.anchors[j], section.anchor(j))).collect();
+            let anchors: Vec<DVec3> = made.order.iter().map(|&j| section.anchor(j)).collect();
             let turn = if self.law == Law::Synchronized {
-                let ascending = if neighbours.len() == 2 { nth == 0 } else { section.on_guides[0] <= w };
-                cut.turns[k][usize::from(!ascending)][place]
+                cut.turns[k][usize::from(given > w)][place]
             } else {
                 station.turn * main.station(section.on_guides[0]).turn.transpose()
             };
             let deformation = Deformation::new(&anchors, &targets, turn, self.tolerance);
             let scale = deformation.scale;
-            if !(LEAST_SCALE..=1.0 / LEAST_SCALE).contains(&scale) {
+            let nearest = before.is_none_or(|before| nth == before || nth == before + 1);
+            if nearest && !(LEAST_SCALE..=1.0 / LEAST_SCALE).contains(&scale) {
                 let fault = SectionFault::Scaled { section: section.chain.origin(), scale, at: station.at };
                 made.notes.push(fault.into());
             }
-            let deformation = if made.closed.1 { deformation.closing() } else { deformation };
-            copies.push(deformation.pieces(&cut.pieces[k], &self.marks.rows[k]));
+            copies.push(Copy { w: given, pieces: deformation.pieces(&cut.pieces[k], &cut.along[k]), course: &cut.courses[k] });
         }
-        match copies.as_slice() {
-            [a, b] => {
-                let (from, to) = (self.sections[neighbours[0]].on_guides[0], self.sections[neighbours[1]].on_guides[0]);
-                let to = if to <= from { to + 1.0 } else { to };
-                let w = if w < from { w + 1.0 } else { w };
-                deform::blended(a, b, (w - from) / (to - from), made.closed.1, self.tolerance)
-            }
-            _ => copies.swap_remove(0),
+        match before {
+            Some(before) => blend::blended(&copies, before, w, made.closed.1, self.tolerance),
+            None => copies.swap_remove(0).pieces,
         }
     }
 }
 
 /// Least and one over the largest scale of a section that is no warning.
 const LEAST_SCALE: f64 = 0.05;
+
+/// W645 where a station has twice as many bends as the sections around it.
+fn ripples(ribs: &[Rib], sections: &[Section], origin: Origin) -> Option<Fault> {
+    let given = |rib: &Rib| sections.iter().any(|s| s.on_guides[0] == rib.w);
+    if ribs.iter().all(given) {
+        return None;
+    }
+    let all: Vec<Vec<f64>> = ribs.iter().map(|rib| inflections(&rib.chain)).collect();
+    let mut worst: Option<(usize, usize, usize)> = None;
+    for (k, own) in all.iter().enumerate().filter(|(k, _)| !given(&ribs[*k])) {
+        let around = [(0..k).rev().find(|j| given(&ribs[*j])), (k..ribs.len()).find(|j| given(&ribs[*j]))];
+        let most = around.into_iter().flatten().map(|j| all[j].len()).max().unwrap_or_default();
+        // A curve with n inflections has n + 1 bends.
+        if own.len() + 1 > 2 * (most + 1) && worst.is_none_or(|(more, ..)| own.len() - most > more) {
+            worst = Some((own.len() - most, k, most));
+        }
+    }
+    worst.map(|(_, k, given)| {
+        let at = ribs[k].chain.point(all[k][0]);
+        SectionFault::Ripples { surface: origin, inflections: all[k].len(), given, at }.into()
+    })
+}
 
 /// W639 where a section reaches beyond the centre of the main guide's bend.
 fn crossing(ribs: &[Rib], main: &Chain, origin: Origin) -> Option<Fault> {

@@ -17,8 +17,6 @@ use crate::model::{Contact, EdgeId, SurfaceId};
 use crate::surface::Surface;
 use crate::{builtins, fields};
 
-/// Dimension of a curvature.
-const CURVATURE: Dim = Dim { length: -1, angle: 0, mass: 0 };
 /// What is told of each joint.
 const QUANTITIES: [[&str; 5]; 3] = [
     ["gap", "gap_min", "gap_max", "gap_mean", "gap_at"],
@@ -128,7 +126,7 @@ fn record_of(cx: &mut Cx, scene: &Scene, contact: &Contact, tolerance: &Toleranc
     let (a, b) = (name(cx, contact.faces.0), name(cx, contact.faces.1));
     let angle = |pick: fn(&crate::model::Spread) -> f64| contact.angle.as_ref().map_or(Value::None, |s| Value::angle(pick(s)));
     let curvature =
-        |pick: fn(&crate::model::Spread) -> f64| contact.curvature.as_ref().map_or(Value::None, |s| Value::quantity(pick(s), CURVATURE));
+        |pick: fn(&crate::model::Spread) -> f64| contact.curvature.as_ref().map_or(Value::None, |s| Value::quantity(pick(s), Dim::CURVATURE));
     let g1 = contact.angle.map_or(Value::None, |s| Value::Bool(s.max <= tolerance.angle));
     cx.record([
         ("a", a),

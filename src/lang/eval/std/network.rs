@@ -8,8 +8,9 @@ use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
 use crate::lang::eval::std::kinds::{CurveOrSurface, LinkOf, Meeting, NetworkOf, ThingsOrCurve};
 use crate::lang::values::conversions::{Length, NodePlace, Point, Rest, Station};
-use crate::lang::values::value::Value;
+use crate::lang::values::value::{Dim, Quantity, Value};
 use crate::network::{Chain, LinkId};
+use crate::surface::data::bends;
 use crate::surface::points::even_points::{MOST, even_points};
 use crate::{builtins, fields};
 
@@ -210,6 +211,10 @@ fields! {
     fn kinks(of: Chain) -> Vec<Point> = |cx, of| {
         Ok(of.kinks(&cx.tolerance()?).into_iter().map(|f| Point(of.point(f))).collect())
     };
+    /// The points where a curve begins to bend the other way; corners are none.
+    fn inflections(of: Chain) -> Vec<Point> = |_, of| Ok(bends::inflections(&of).into_iter().map(|f| Point(of.point(f))).collect());
+    /// How much a curve bends: the integral of its squared curvature along it, without its corners, 1/length.
+    fn bending(of: Chain) -> Quantity = |_, of| Ok(Quantity::new(bends::bending(&of), Dim::CURVATURE));
     /// The links of the network that a curve runs over, in its direction.
     fn links(of: Chain) -> Vec<LinkOf> = |cx, of| {
         let module = cx.module();

@@ -86,8 +86,8 @@ builtins! {
     /// It contains every section and every guide; u runs along the first guide, the main one, v along the sections. The law says
     /// where sections stand between those given: `parallel` ones in parallel planes, `rotational` ones in half-planes of the axis,
     /// `normal` ones in planes normal to the main guide, `synchronized` ones through points that divide all guides in the same
-    /// ratio. Its assumptions are checked first. Between two sections both are deformed to touch the guides, and blended; before
-    /// the first one and after the last the nearest one is deformed. Every section must touch every guide within the tolerance;
+    /// ratio. Its assumptions are checked first. Between two sections those around are deformed to touch the guides, with the least
+    /// bending, and blended; before the first one and after the last the nearest one is deformed. Every section must touch every guide within the tolerance;
     /// their order and direction change nothing. One section on one guide is exact.
     /// ```loft
     /// curve foot = spline([(0, -60, 0), (0, -30, 18), (0, 0, 24), (0, 30, 18), (0, 60, 0)])
@@ -142,6 +142,33 @@ builtins! {
         let (surface, notes) = swept(&input, &tolerance)?;
         reported(cx, surface, &notes)
     };
+
+    /// How fair the curves are that a surface is made through: the stations of a sweep, the sections of a skin, the curves along v of a net.
+    ///
+    /// A record of each, in their order: `at`, its u, or v of a section of a skin; `given`, whether it is one of the curves that were given;
+    /// `inflections`, how often it begins to bend the other way, corners left out; `radius`, the least one of its bends, `none` where it is straight;
+    /// `bending`, ∫κ² along it times its length, beside the larger of those of the given curves around it. A station between two sections
+    /// that is as fair as these has no more inflections, and a bending near 1.
+    /// ```loft
+    /// curve foot = spline([(0, -60, 0), (0, -30, 18), (0, 0, 24), (0, 30, 18), (0, 60, 0)])
+    /// curve head = spline([(120, -60, 0), (120, -20, 21), (120, 0, 24), (120, 25, 19), (120, 60, 0)])
+    /// curve left = line((0, -60, 0), (120, -60, 0))
+    /// curve right = line((0, 60, 0), (120, 60, 0))
+    /// curve crest = spline([(0, 0, 24), (60, 0, 30), (120, 0, 24)])
+    /// surface hood = sweep([foot, head], law: parallel, guides: [left, right, crest])
+    /// report fairness(hood)
+    /// check max(hood.inflections) == 0
+    /// ```
+    fn fairness(
+        /// The surface.
+        s: Surface,
+    ) -> Vec<Value> = |cx, s| Ok(s.fairness().into_iter().map(|station| cx.record([
+        ("at", Value::number(station.at)),
+        ("given", Value::Bool(station.given)),
+        ("inflections", Value::number(station.inflections as f64)),
+        ("radius", if station.radius.is_finite() { Value::length(station.radius) } else { Value::None }),
+        ("bending", Value::number(station.bending)),
+    ])).collect());
 }
 
 crate::fields! {
@@ -152,6 +179,22 @@ crate::fields! {
         /// The surface.
         s: Surface,
     ) -> Vec<Chain> = |_cx, s| Ok(s.stations());
+
+    /// How often each of its stations begins to bend the other way, in their order.
+    ///
+    /// A list of no numbers where it was not made through curves. `fairness(s)` has more.
+    fn inflections(
+        /// The surface.
+        s: Surface,
+    ) -> Vec<usize> = |_cx, s| Ok(s.fairness().iter().map(|station| station.inflections).collect());
+
+    /// How much each of its stations bends, beside the given curves around it.
+    ///
+    /// ∫κ² along it times its length, over the larger one of those of the given curve before it and the one after it; 1 for a given curve. A list of no numbers where it was not made through curves.
+    fn bending(
+        /// The surface.
+        s: Surface,
+    ) -> Vec<f64> = |_cx, s| Ok(s.fairness().iter().map(|station| station.bending).collect());
 
     /// Counts of control points of a B-spline surface along u and v.
     ///
