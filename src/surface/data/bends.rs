@@ -47,12 +47,17 @@ pub fn least_radius(chain: &Chain) -> f64 {
 
 /// Fractions at which a curve begins to bend the other way, ascending; corners are none. A straight part between two bends has its middle.
 pub fn inflections(chain: &Chain) -> Vec<f64> {
+    inflections_above(chain, NOTHING)
+}
+
+/// Those where it bends by more than a share of its largest curvature before and after.
+pub fn inflections_above(chain: &Chain, share: f64) -> Vec<f64> {
     let samples = sampled(chain);
     let most = largest(&samples);
     if most * chain.length() <= NO_TURN {
         return Vec::new();
     }
-    let bent: Vec<(f64, DVec3)> = samples.into_iter().filter(|(_, k)| k.length() > NOTHING * most).collect();
+    let bent: Vec<(f64, DVec3)> = samples.into_iter().filter(|(_, k)| k.length() > share * most).collect();
     let turned = bent.windows(2).filter(|w| w[0].1.dot(w[1].1) < 0.0);
     let narrowed = |w: &[(f64, DVec3)]| {
         let (way, mut low, mut high) = (w[0].1, w[0].0, w[1].0);

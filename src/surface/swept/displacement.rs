@@ -1,8 +1,8 @@
 //! How a section gives way between its anchors: the displacement that bends least and is what it has to be at them.
 //!
 //! Over the parameter in which a section is as smooth as its pieces make it, the displacement is the cubic spline through the anchors with
-//! the least ∫ δ″², natural at open ends and periodic on closed sections. Straight members stay straight: over one δ is linear, and it goes
-//! on smoothly where the section does. Two members that meet at an angle turn against each other like parts of a rod with a hinge.
+//! the least ∫ δ″², natural at open ends and periodic on closed sections. Straight members stay straight unless an anchor divides them: over one δ is linear,
+//! and it goes on smoothly where the section does. Two members that meet at an angle turn against each other like parts of a rod with a hinge.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -93,13 +93,28 @@ impl Course {
         Self { spans, smooth, fair, return_ratio, straight }
     }
 
-    /// Runs of pieces between anchors that are one member: straight ones in line, or bent ones.
-    fn members(&self, anchors: &[usize]) -> Vec<Range<usize>> {
+    /// Which pieces stay straight: those of straight lines that no anchor divides.
+    fn stiff(&self, anchors: &[usize]) -> Vec<bool> {
         let n = self.spans.len();
-        let ends = |k: usize| {
-            let alike = self.straight[k - 1] == self.straight[k] && (!self.straight[k] || self.smooth[k]);
-            anchors.contains(&k) || !alike
-        };
+        let mut stiff = self.straight.clone();
+        let goes_on = |k: usize| self.straight[k] && self.straight[(k + n - 1) % n] && self.smooth[k];
+        let mut from = 0;
+        while from < n {
+            let to = (from + 1..n).find(|k| !goes_on(*k)).unwrap_or(n);
+            // A closed section begins at an anchor.
+            let over_start = (from == 0 || to == n) && goes_on(0);
+            if over_start || anchors.iter().any(|a| from < *a && *a < to) {
+                stiff[from..to].fill(false);
+            }
+            from = to;
+        }
+        stiff
+    }
+
+    /// Runs of pieces between anchors that are one member: straight ones in line, or bent ones.
+    fn members(&self, anchors: &[usize], stiff: &[bool]) -> Vec<Range<usize>> {
+        let n = self.spans.len();
+        let ends = |k: usize| anchors.contains(&k) || stiff[k - 1] != stiff[k] || stiff[k] && !self.smooth[k];
         let mut starts: Vec<usize> = std::iter::once(0).chain((1..n).filter(|k| ends(*k))).collect();
         starts.push(n);
         starts.windows(2).map(|w| w[0]..w[1]).collect()
@@ -131,6 +146,8 @@ struct Member {
 pub(super) struct Displacement {
     /// Of each piece the shares of the anchors in value and derivative at its start, then at its end, by its own parameter.
     pieces: Vec<[Vec<f64>; 4]>,
+    /// Whether each piece stays straight.
+    stiff: Vec<bool>,
     anchors: usize,
 }
 
@@ -141,12 +158,13 @@ impl Displacement {
         let constant = || {
             let one = vec![1.0 / anchors.len() as f64; anchors.len()];
             let none = vec![0.0; anchors.len()];
-            Self { pieces: vec![[one.clone(), none.clone(), one, none]; n], anchors: anchors.len() }
+            Self { pieces: vec![[one.clone(), none.clone(), one, none]; n], stiff: vec![false; n], anchors: anchors.len() }
         };
         if anchors.len() < 2 {
             return constant();
         }
-        let runs = course.members(anchors);
+        let stiff = course.stiff(anchors);
+        let runs = course.members(anchors, &stiff);
         // Unknowns: values where members meet at no anchor, and slopes of bent members.
         let most = 3 * runs.len() + 1;
         let mut taken = 0;
@@ -163,7 +181,7 @@ impl Displacement {
         let mut members: Vec<Member> = Vec::with_capacity(runs.len());
         for (m, run) in runs.into_iter().enumerate() {
             let span: f64 = course.spans[run.clone()].iter().sum();
-            let (straight, ends) = (course.straight[run.start], [values[m].clone(), values[m + 1].clone()]);
+            let (straight, ends) = (stiff[run.start], [values[m].clone(), values[m + 1].clone()]);
             let slopes = if straight {
                 let rise = sum([(1.0, &ends[1]), (-1.0, &ends[0])]);
                 let rates = line_rates(section, course, &run);
@@ -183,7 +201,7 @@ impl Displacement {
                 .collect()
         };
         let pieces = members.iter().flat_map(|member| member.shares(section, course, &known)).collect();
-        Self { pieces, anchors: anchors.len() }
+        Self { pieces, stiff, anchors: anchors.len() }
     }
 
     /// Displaces piece `k` by displacements of the anchors.
@@ -194,7 +212,7 @@ impl Displacement {
         let (start, end) = (of(start), of(end));
         let degree = piece.len() - 1;
         let rest: Vec<DVec3> = at_rest.iter().map(|q| projected(*q)).collect();
-        let by: Vec<DVec3> = match straight_shares(&rest) {
+        let by: Vec<DVec3> = match straight_shares(&rest).filter(|_| self.stiff[k]) {
             Some(shares) => shares.iter().map(|share| start.lerp(end, *share)).collect(),
             None => {
                 let (first, last) = (at_rest[0].w / at_rest[1].w, at_rest[degree].w / at_rest[degree - 1].w);
@@ -365,6 +383,15 @@ mod tests {
         for (k, wanted) in [(0, 0.0), (1, 0.6875), (2, 1.0), (3, 0.6875)] {
             assert!((moved[k][0].z - wanted).abs() < 1e-12, "{k}: {}", moved[k][0].z);
         }
+    }
+
+    #[test]
+    fn a_line_that_an_anchor_divides_bends_smoothly() {
+        let line = |k: usize| (0..4).map(|i| DVec3::new(k as f64 + i as f64 / 3.0, 0.0, 0.0).extend(1.0)).collect();
+        let section: Pieces = (0..2).map(line).collect();
+        let moved = displaced(&section, &[0.0, 0.5, 1.0], &[0, 1, 2], &[DVec3::ZERO, DVec3::Z, DVec3::ZERO]);
+        let (before, after) = (end_slopes(&moved[0]).1, end_slopes(&moved[1]).0);
+        assert!(before.angle_between(after) < 1e-12, "{before} {after}");
     }
 
     #[test]

@@ -5,12 +5,24 @@ use crate::base::tolerance::{NUDGE, Tolerance};
 use crate::surface::swept::deform;
 use crate::surface::swept::sections::Section;
 
+/// Breaks of two sections at places no farther from each other than so many tolerances are one.
+const ONE_BREAK: f64 = 16.0;
+
 /// The common breaks of all sections: of each the fractions.
 pub struct Marks {
     /// Fractions of all breaks, one row per section.
     pub rows: Vec<Vec<f64>>,
     /// Which break each guide runs through, in the order in which sections meet them.
     pub places: Vec<usize>,
+}
+
+/// A place at which all sections are divided.
+struct Mark {
+    /// The run between two guides, and the share of it.
+    run: usize,
+    share: f64,
+    /// Sections with a break of their own there, and its fraction.
+    own: Vec<(usize, f64)>,
 }
 
 impl Marks {
@@ -52,21 +64,41 @@ impl Marks {
             };
             own.push(deform::own_breaks(&section.chain, tolerance)?.into_iter().map(share).collect());
         }
-        let mut all: Vec<(usize, f64)> = own.iter().flatten().map(|m| (m.0, m.1)).filter(|m| m.1 > NUDGE && m.1 < 1.0 - NUDGE).collect();
-        all.extend((0..edges[0].len() - 1).map(|q| (q, 0.0)));
-        all.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
-        all.dedup_by(|b, a| a.0 == b.0 && b.1 - a.1 <= NUDGE);
+        let runs = edges[0].len() - 1;
+        let room: Vec<f64> = (0..runs)
+            .map(|q| {
+                let run = |(section, edges): (&Section, &Vec<f64>)| section.chain.length() * (edges[q + 1] - edges[q]);
+                NUDGE.max(ONE_BREAK * tolerance.point / sections.iter().zip(&edges).map(run).fold(0.0, f64::max))
+            })
+            .collect();
+        let mut single: Vec<(usize, f64, usize, f64)> = Vec::new();
+        for (k, marks) in own.iter().enumerate() {
+            single.extend(marks.iter().filter(|m| m.1 > NUDGE && m.1 < 1.0 - NUDGE).map(|(q, share, f)| (*q, *share, k, *f)));
+        }
+        single.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
+        // Breaks of sections that are alike are at shares that differ by the digits of these: what is between them is no piece.
+        let mut all: Vec<Mark> = (0..runs).map(|q| Mark { run: q, share: 0.0, own: Vec::new() }).collect();
+        let mut last: Option<(usize, f64)> = None;
+        for (q, share, k, f) in single {
+            let near = last.is_some_and(|(run, before)| run == q && share - before <= room[q]);
+            last = Some((q, share));
+            match all.last_mut() {
+                Some(mark) if near && mark.own.iter().all(|o| o.0 != k) => mark.own.push((k, f)),
+                _ => all.push(Mark { run: q, share, own: vec![(k, f)] }),
+            }
+        }
+        all.sort_by(|a, b| a.run.cmp(&b.run).then(a.share.total_cmp(&b.share)));
         let row = |k: usize| -> Vec<f64> {
-            let one = |&(q, r): &(usize, f64)| {
-                let (from, to) = (edges[k][q], edges[k][q + 1]);
-                let kept = own[k].iter().find(|m| m.0 == q && (m.1 - r).abs() <= NUDGE && r > 0.0);
-                kept.map_or(if r == 0.0 { from } else { from + (to - from) * r }, |m| m.2)
+            let one = |mark: &Mark| {
+                let (from, to) = (edges[k][mark.run], edges[k][mark.run + 1]);
+                let own = mark.own.iter().find(|o| o.0 == k).map(|o| o.1);
+                own.unwrap_or(if mark.share == 0.0 { from } else { from + (to - from) * mark.share })
             };
             all.iter().map(one).chain([1.0]).collect()
         };
         let rows = (0..sections.len()).map(row).collect();
         let first = usize::from(head);
-        let place = |q: usize| all.iter().position(|m| *m == (q, 0.0)).unwrap_or(all.len());
+        let place = |q: usize| all.iter().position(|mark| mark.run == q && mark.share == 0.0).unwrap_or(all.len());
         let places =
             (0..order.len()).map(|n| if n + first + 1 == edges[0].len() && !closed { all.len() } else { place(n + first) }).collect();
         Ok(Self { rows, places })

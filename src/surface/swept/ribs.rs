@@ -7,7 +7,7 @@ use crate::base::job;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
 use crate::network::Chain;
-use crate::surface::data::bends::inflections;
+use crate::surface::data::bends::inflections_above;
 use crate::surface::faults::{SectionFault, SweepFault};
 use crate::surface::swept::blend::{self, Copy};
 use crate::surface::swept::deform::{self, Deformation, Pieces};
@@ -141,13 +141,16 @@ impl Given<'_> {
 /// Least and one over the largest scale of a section that is no warning.
 const LEAST_SCALE: f64 = 0.05;
 
+/// Bends of a station count where their curvature is more than this share of its largest one.
+const SEEN: f64 = 1.0 / 64.0;
+
 /// W645 where a station has twice as many bends as the sections around it.
 fn ripples(ribs: &[Rib], sections: &[Section], origin: Origin) -> Option<Fault> {
     let given = |rib: &Rib| sections.iter().any(|s| s.on_guides[0] == rib.w);
     if ribs.iter().all(given) {
         return None;
     }
-    let all: Vec<Vec<f64>> = ribs.iter().map(|rib| inflections(&rib.chain)).collect();
+    let all: Vec<Vec<f64>> = ribs.iter().map(|rib| inflections_above(&rib.chain, SEEN)).collect();
     let mut worst: Option<(usize, usize, usize)> = None;
     for (k, own) in all.iter().enumerate().filter(|(k, _)| !given(&ribs[*k])) {
         let around = [(0..k).rev().find(|j| given(&ribs[*j])), (k..ribs.len()).find(|j| given(&ribs[*j]))];

@@ -125,8 +125,9 @@ fn record_of(cx: &mut Cx, scene: &Scene, contact: &Contact, tolerance: &Toleranc
     };
     let (a, b) = (name(cx, contact.faces.0), name(cx, contact.faces.1));
     let angle = |pick: fn(&crate::model::Spread) -> f64| contact.angle.as_ref().map_or(Value::None, |s| Value::angle(pick(s)));
-    let curvature =
-        |pick: fn(&crate::model::Spread) -> f64| contact.curvature.as_ref().map_or(Value::None, |s| Value::quantity(pick(s), Dim::CURVATURE));
+    let curvature = |pick: fn(&crate::model::Spread) -> f64| {
+        contact.curvature.as_ref().map_or(Value::None, |s| Value::quantity(pick(s), Dim::CURVATURE))
+    };
     let g1 = contact.angle.map_or(Value::None, |s| Value::Bool(s.max <= tolerance.angle));
     cx.record([
         ("a", a),
