@@ -12,6 +12,7 @@ pub mod curve_on_surface;
 pub mod curves;
 pub mod defect;
 mod degenerate_edges;
+mod doubled;
 pub mod elementary_surface;
 pub mod face;
 pub mod face_loops;

@@ -26,9 +26,12 @@ impl Part {
         };
         let copies = stated.copies.max(1) as f64;
         match stated.figure {
-            Figure::Area(given) => {
-                compared("area", surfaces.iter().map(measure::area).sum::<f64>() / copies, given, &format!("{}²", self.model_unit))
-            }
+            Figure::Area(given) => compared(
+                "area",
+                surfaces.iter().map(measure::area).fold(0.0, std::ops::Add::add) / copies,
+                given,
+                &format!("{}²", self.model_unit),
+            ),
             Figure::Volume(given) => {
                 compared("volume", measure::solid(&faces()).volume.abs() / copies, given, &format!("{}³", self.model_unit))
             }

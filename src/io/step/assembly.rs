@@ -5,11 +5,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::base::tolerance::NUDGE;
 use crate::base::{job, limits};
 use crate::geometry::Motion;
 use crate::io::cad::assembly::Node;
 use crate::io::cad::defect::{Defect, defect};
-use crate::io::step::product_tables::{ProductUse, Tables};
+use crate::io::step::part::is_body;
+use crate::io::step::product_tables::{ProductUse, Tables, mapped_by};
 use crate::io::step::reader::{Frame, Step};
 use crate::io::step::records::File;
 use crate::io::step::units::{Units, of_context};
@@ -96,6 +98,10 @@ struct AssemblyReader<'s, 'f> {
     owned: BTreeSet<u32>,
     units: BTreeMap<u32, Units>,
     shown: BTreeSet<u32>,
+    /// Things with the instance that has them: representations that are one may each list them.
+    listed: BTreeSet<(usize, u32)>,
+    /// All that things of products are made of, once those stand; another representation of them shows nothing new.
+    stands: Vec<bool>,
     found: Assembly,
     full: bool,
 }
@@ -104,8 +110,17 @@ struct AssemblyReader<'s, 'f> {
 pub fn assembly(step: &mut Step) -> Assembly {
     let tables = Tables::of(step.file);
     let owned = tables.shapes.values().flatten().copied().collect();
-    let mut reader =
-        AssemblyReader { step, tables, owned, units: BTreeMap::new(), shown: BTreeSet::new(), found: Assembly::default(), full: false };
+    let mut reader = AssemblyReader {
+        step,
+        tables,
+        owned,
+        units: BTreeMap::new(),
+        shown: BTreeSet::new(),
+        listed: BTreeSet::new(),
+        stands: Vec::new(),
+        found: Assembly::default(),
+        full: false,
+    };
     let still = Motion::translation(glam::DVec3::ZERO);
     let mapped = |reader: &AssemblyReader, p: u32| {
         reader.tables.shapes.get(&p).is_some_and(|all| all.iter().any(|r| reader.tables.mapped.contains(r)))
@@ -117,12 +132,14 @@ pub fn assembly(step: &mut Step) -> Assembly {
         }
     }
     // Representations that no product shows, and those of products that are parts of each other in a circle.
+    reader.stands = parts_of(reader.step.file, reader.found.placed.iter().map(|placed| placed.item));
     for of_parts in [false, true] {
         let left: Vec<u32> = reader.tables.representations.keys().copied().collect();
         for representation in left {
             let skip = reader.shown.contains(&representation)
                 || reader.tables.aspects.contains(&representation)
-                || (!of_parts && reader.tables.mapped.contains(&representation));
+                || reader.tables.views.contains(&representation)
+                || (!of_parts && reader.tables.mapped_by_any.contains(&representation));
             if !skip && (of_parts || !reader.owned.contains(&representation)) {
                 reader.alone(representation, &still);
             }
@@ -220,8 +237,14 @@ impl AssemblyReader<'_, '_> {
             if self.full {
                 return;
             }
-            if self.step.file.name(item) == b"MAPPED_ITEM" {
+            if mapped_by(self.step.file, item).is_some() {
                 self.mapped(item, instance, units, motion, depth);
+                continue;
+            }
+            // Representations without a product stand in one frame.
+            let loose = self.found.instances[instance].product.is_none() && depth == 0;
+            let within = if loose { usize::MAX } else { instance };
+            if self.stands_already(item) || !self.listed.insert((within, item)) {
                 continue;
             }
             if self.found.placed.len() >= limits::PART_INSTANCES {
@@ -229,6 +252,26 @@ impl AssemblyReader<'_, '_> {
             }
             self.found.placed.push(Placed { item, representation, units, motion: *motion, instance });
         }
+    }
+
+    /// Whether products have a thing, or all that it is made of, where they have another body of the same shells.
+    fn stands_already(&self, item: u32) -> bool {
+        let stands = |k: u32| self.stands.get(k as usize) == Some(&true);
+        let mut made_of = self.step.file.references(item).peekable();
+        stands(item) || is_body(self.step.file, item) && made_of.peek().is_some() && made_of.all(stands)
+    }
+
+    /// Whether an occurrence places the product of a representation in that of an instance: a mapped item there says so once more.
+    fn is_part(&mut self, representation: u32, instance: usize, placed: &Motion) -> bool {
+        let product = self.found.instances.get(instance).and_then(|instance| instance.product);
+        let Some(occurrences) = product.and_then(|product| self.tables.occurrences.get(&product)).cloned() else { return false };
+        let has = |of: &&ProductUse| self.tables.shapes.get(&of.child).is_some_and(|all| all.contains(&representation));
+        let near = |a: &Motion| {
+            let corners = [glam::DVec3::ZERO, glam::DVec3::X, glam::DVec3::Y, glam::DVec3::Z];
+            corners.iter().all(|p| a.point(*p).distance(placed.point(*p)) <= NUDGE * (1.0 + placed.point(*p).length()))
+        };
+        let of_it: Vec<&ProductUse> = occurrences.iter().filter(has).collect();
+        of_it.iter().any(|of| of.link.is_some_and(|link| self.link(link, of).is_ok_and(|motion| near(&motion))))
     }
 
     /// A representation placed by a mapped item, with those that are one with it.
@@ -245,6 +288,7 @@ impl AssemblyReader<'_, '_> {
             Ok::<_, Defect>((of, self.target(row.entity(2)?, &from)?))
         })();
         match placed {
+            Ok((of, placed)) if self.is_part(of, instance, &placed) => {}
             Ok((of, placed)) => {
                 let name = row.text(0);
                 let made = Instance { name, parent: Some(instance), entity: item, product: None, motion: *motion };
@@ -321,6 +365,19 @@ impl AssemblyReader<'_, '_> {
         let swapped = is_child(second) && !is_child(first);
         Ok(if swapped { of_second.to(&of_first) } else { of_first.to(&of_second) })
     }
+}
+
+/// Which entities some items are, and are made of.
+fn parts_of(file: &File, items: impl Iterator<Item = u32>) -> Vec<bool> {
+    let mut found = vec![false; file.records.len()];
+    let mut open: Vec<u32> = items.collect();
+    while let Some(k) = open.pop() {
+        job::poll();
+        if !std::mem::replace(&mut found[k as usize], true) {
+            open.extend(file.references(k));
+        }
+    }
+    found
 }
 
 /// The name of the product that a definition is of.

@@ -5,7 +5,6 @@ use glam::DVec3;
 use crate::base::bbox::Box3;
 use crate::base::job;
 use crate::io::step::reader::Step;
-use crate::io::step::records::{Token, TokenKind};
 
 impl Step<'_> {
     /// A box that holds about all of an item, model units: vertices, control points, whole circles and spheres.
@@ -64,11 +63,7 @@ impl Step<'_> {
                 }
                 _ => {}
             }
-            for name in file.names(k) {
-                let Some(row) = file.under(k, name) else { continue };
-                let tokens = &file.tokens[row.first as usize..row.end as usize];
-                open.extend(tokens.iter().filter(|t| t.kind == TokenKind::Ref && t.end != Token::NONE).map(|t| t.end));
-            }
+            open.extend(file.references(k));
         }
         reach
     }

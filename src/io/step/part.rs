@@ -332,7 +332,7 @@ impl StepPartBuilder<'_> {
 }
 
 /// Whether an item is a solid or a shell.
-fn is_body(file: &File, k: u32) -> bool {
+pub(super) fn is_body(file: &File, k: u32) -> bool {
     const BODIES: &[&[u8]] = &[
         b"MANIFOLD_SOLID_BREP",
         b"BREP_WITH_VOIDS",

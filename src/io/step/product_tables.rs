@@ -26,8 +26,12 @@ pub(crate) struct Tables {
     pub(super) occurrences: BTreeMap<u32, Vec<ProductUse>>,
     /// Products that are parts of others.
     pub(super) parts: BTreeSet<u32>,
-    /// Representations that mapped items place.
+    /// Representations that mapped items of what products show place.
     pub(super) mapped: BTreeSet<u32>,
+    /// Representations that mapped items of any but views place.
+    pub(super) mapped_by_any: BTreeSet<u32>,
+    /// Representations of drawings: saved views, which show once more what stands elsewhere.
+    pub(super) views: BTreeSet<u32>,
     /// Representations of what is no product: features, properties.
     pub(super) aspects: BTreeSet<u32>,
     pub(super) products: Vec<u32>,
@@ -36,6 +40,11 @@ pub(crate) struct Tables {
 /// Whether an entity is a representation of a shape.
 pub(crate) fn is_representation(file: &File, k: u32) -> bool {
     file.names(k).any(|n| n.ends_with(b"SHAPE_REPRESENTATION"))
+}
+
+/// The representation that a mapped item places.
+pub(crate) fn mapped_by(file: &File, item: u32) -> Option<u32> {
+    (file.name(item) == b"MAPPED_ITEM").then(|| file.parameters(item).entity(1).and_then(|map| file.parameters(map).entity(1)).ok())?
 }
 
 impl Tables {
@@ -58,10 +67,6 @@ impl Tables {
                 b"SHAPE_DEFINITION_REPRESENTATION" => shown.extend(row.entity(0).ok().zip(row.entity(1).ok())),
                 b"NEXT_ASSEMBLY_USAGE_OCCURRENCE" => used.push(k),
                 b"CONTEXT_DEPENDENT_SHAPE_REPRESENTATION" => links.extend(row.entity(0).ok().zip(row.entity(1).ok())),
-                b"MAPPED_ITEM" => {
-                    let of = row.entity(1).and_then(|map| file.parameters(map).entity(1));
-                    tables.mapped.extend(of);
-                }
                 b"SHAPE_REPRESENTATION_RELATIONSHIP" => {
                     if let (Ok(a), Ok(b)) = (row.entity(2), row.entity(3)) {
                         tables.same.entry(a).or_default().push(b);
@@ -72,6 +77,9 @@ impl Tables {
                     let row = file.under(k, b"REPRESENTATION").unwrap_or(row);
                     let items = row.list(1).map(|list| list.values().filter_map(|v| v.entity().ok()).collect()).unwrap_or_default();
                     tables.representations.insert(k, (items, row.entity(2).ok()));
+                    if file.is(k, b"DRAUGHTING_MODEL") {
+                        tables.views.insert(k);
+                    }
                 }
                 _ => {}
             }
@@ -92,7 +100,26 @@ impl Tables {
             tables.parts.insert(child);
             tables.occurrences.entry(parent).or_default().push(ProductUse { entity: k, child, name, link: links.get(&k).copied() });
         }
+        tables.map(file);
         tables
+    }
+
+    /// Finds what mapped items place.
+    fn map(&mut self, file: &File) {
+        let owned: BTreeSet<u32> = self.shapes.values().flatten().copied().collect();
+        self.views.retain(|view| !owned.contains(view));
+        let placed = |k: &u32| {
+            let items = self.representations.get(k).map_or(&[][..], |(items, _)| items);
+            items.iter().filter_map(|item| mapped_by(file, *item)).collect::<Vec<u32>>()
+        };
+        self.mapped_by_any = self.representations.keys().filter(|k| !self.views.contains(k)).flat_map(placed).collect();
+        let (mut open, mut seen): (Vec<u32>, _) = (owned.iter().copied().collect(), owned);
+        while let Some(k) = open.pop() {
+            let own = placed(&k);
+            let same = self.same.get(&k).into_iter().flatten();
+            open.extend(own.iter().chain(same).filter(|k| seen.insert(**k)));
+            self.mapped.extend(own);
+        }
     }
 
     /// The representations that are one with some, which none of another product is.

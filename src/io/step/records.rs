@@ -134,6 +134,12 @@ impl<'b> File<'b> {
         self.names(k).any(|n| n == name)
     }
 
+    /// The entities that it refers to.
+    pub fn references(&self, k: u32) -> impl Iterator<Item = u32> {
+        let tokens = self.pieces_of(k).iter().flat_map(|p| &self.tokens[p.tokens.0 as usize..p.tokens.1 as usize]);
+        tokens.filter(|t| t.kind == TokenKind::Ref && t.end != Token::NONE).map(|t| t.end)
+    }
+
     /// Whether it is written with several names.
     pub fn is_complex(&self, k: u32) -> bool {
         self.pieces_of(k).len() > 1

@@ -69,6 +69,10 @@ impl Cx<'_> {
             let (path, total, share) = (file.path.to_owned(), part.n_faces(), part.share_missing());
             self.say(&ContentFault::Unusable { of: file.origin, path, total, faces, share, whole: self.sink.whole }.into());
         }
+        let pairs = part.doubled(&tolerance);
+        if !pairs.is_empty() {
+            self.say(&ContentFault::Doubled { of: file.origin, path: file.path.to_owned(), pairs }.into());
+        }
         Ok(value)
     }
 

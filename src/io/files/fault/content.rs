@@ -59,6 +59,15 @@ pub enum ContentFault {
         /// All are listed.
         whole: bool,
     },
+    /// W814: bodies of a file that stand where the same one stands already.
+    Doubled {
+        /// The import.
+        of: Origin,
+        /// As written.
+        path: String,
+        /// Names of the first one and of that which stands in its place, for each.
+        pairs: Vec<(String, String)>,
+    },
     /// E809: modules import each other.
     ImportCycle {
         /// The `use` that closes the ring.
@@ -91,13 +100,14 @@ impl Malformed {
 }
 
 impl Describe for ContentFault {
-    codes! { Malformed "E803", Repaired "W810", Unusable "W726", ImportCycle "E809" }
+    codes! { Malformed "E803", Repaired "W810", Unusable "W726", Doubled "W814", ImportCycle "E809" }
 
     fn describe(&self, _: &dyn Say) -> Report {
         match self {
             Self::Malformed { of, path, at } => Report::new(format!("\"{path}\"{}: {}", at.place(), at.what)).at(*of, "imported here"),
             Self::Repaired { of, path, at } => Report::new(format!("\"{path}\"{}: {}", at.place(), at.what)).at(*of, "imported here"),
             Self::Unusable { of, path, total, faces, share, whole } => unusable(*of, path, *total, faces, *share, *whole),
+            Self::Doubled { of, path, pairs } => doubled(*of, path, pairs),
             Self::ImportCycle { of, ring } => {
                 Report::new(format!("modules import each other: {}", ring.join(" → "))).at(*of, "closes the cycle")
             }
@@ -123,6 +133,15 @@ fn unusable(of: Origin, path: &str, total: usize, faces: &[Malformed], share: Op
         0 => report,
         more => report.note(format!("and {more} more, which `loft explain` lists with the name of the part")),
     }
+}
+
+/// W814: which bodies stand in the place of which.
+fn doubled(of: Origin, path: &str, pairs: &[(String, String)]) -> Report {
+    let count = if pairs.len() == 1 { "a body stands".to_owned() } else { format!("{} bodies stand", pairs.len()) };
+    let report = Report::new(format!("{count} twice in the same place in \"{path}\"")).at(of, "imported here");
+    let listed = pairs.iter().take(FACES_LISTED);
+    let report = listed.fold(report, |r, (first, second)| r.note(format!("`{second}` is where `{first}` is")));
+    report.help("volumes and areas count both; take one of them, as `.solids[0]`")
 }
 
 #[cfg(test)]
