@@ -145,7 +145,7 @@ fn fences<'a>(page: &'a str, kind: &str) -> Vec<&'a str> {
 /// Codes whose pages show no script: no small one leads there, or what leads there is no script.
 const WITHOUT_SCRIPT: &[&str] = &[
     "E110", "E409", "E410", "E413", "E505", "E506", "E510", "W606", "W607", "W614", "N615", "E616", "E714", "E715", "E808", "W726", "W810",
-    "E811", "W814", "E902", "E904", "E999",
+    "E811", "W814", "E815", "E902", "E904", "E999",
 ];
 
 /// Every page shows a broken script, exactly what is said about it, and a repaired script without errors.

@@ -127,6 +127,14 @@ pub enum Data {
     Trimmed { surface: Pointer, outer: Option<Pointer>, inner: Vec<Pointer> },
     /// 186.
     Solid { shells: Vec<Pointer> },
+    /// 184: solids with their matrices.
+    SolidAssembly(Vec<(Pointer, Pointer)>),
+    /// 308.
+    Definition { name: String, members: Vec<Pointer> },
+    /// 408.
+    Instance { of: Pointer, at: DVec3, scale: f64 },
+    /// 430.
+    SolidInstance(Pointer),
     /// 190: point, normal, reference direction.
     PlaneSurface { at: Pointer, normal: Pointer, reference: Pointer },
     /// 192, 194 (half angle in degrees), 196, 198: point, axis, radii.

@@ -43,8 +43,10 @@ pub fn decode(entry: &Entry, reader: &mut ParameterReader) -> Result<Decoded, De
         143 => faces::bounded(reader)?,
         144 => faces::trimmed(reader)?,
         186 => faces::solid(reader)?,
+        184 => faces::assembly(reader)?,
         190 => surfaces::plane_surface(form, reader)?,
         192 | 194 | 196 | 198 => surfaces::round(entry.kind, form, reader)?,
+        308 => faces::definition(reader)?,
         314 => {
             let rgb = [reader.real("red")?, reader.real("green")?, reader.real("blue")?];
             Data::Color { rgb, name: reader.text() }
@@ -63,6 +65,11 @@ pub fn decode(entry: &Entry, reader: &mut ParameterReader) -> Result<Decoded, De
             reader.count("count of values")?;
             Data::Name(reader.text())
         }
+        408 => {
+            let (of, at) = (reader.pointer("definition")?, reader.point("translation")?);
+            Data::Instance { of, at, scale: reader.real_or(1.0) }
+        }
+        430 => Data::SolidInstance(reader.pointer("solid")?),
         502 => faces::vertices(reader)?,
         504 => faces::edges(reader)?,
         508 => faces::loop_of(reader)?,

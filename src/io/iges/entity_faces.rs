@@ -62,6 +62,22 @@ pub fn solid(r: &mut ParameterReader) -> Result<Data, Defect> {
     Ok(Data::Solid { shells })
 }
 
+/// 184: the solids, then a matrix for each.
+pub fn assembly(r: &mut ParameterReader) -> Result<Data, Defect> {
+    let n = r.count("count of solids")?;
+    r.needs(n, 2, "solids with matrices")?;
+    let items = r.pointers(n, "solids")?;
+    Ok(Data::SolidAssembly(items.into_iter().zip(r.pointers(n, "matrices")?).collect()))
+}
+
+/// 308.
+pub fn definition(r: &mut ParameterReader) -> Result<Data, Defect> {
+    r.int("depth")?;
+    let name = r.text();
+    let n = r.count("count of members")?;
+    Ok(Data::Definition { name, members: r.pointers(n, "members")? })
+}
+
 /// 502.
 pub fn vertices(r: &mut ParameterReader) -> Result<Data, Defect> {
     let n = r.count("count of vertices")?;

@@ -18,6 +18,7 @@ mod entity_table;
 mod entity_writer;
 mod faces;
 mod global;
+mod instances;
 mod levels;
 mod lines;
 mod open;

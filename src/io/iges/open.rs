@@ -97,7 +97,7 @@ impl OpenedIges {
                 _ => {}
             }
         }
-        reach
+        self.table.placed_reach(reach)
     }
 
     /// Entities with all that they are made of: profiles, axes, rails, pieces.

@@ -9,6 +9,7 @@ use glam::DVec3;
 use crate::base::bbox::Box3;
 use crate::base::tolerance::Tolerance;
 use crate::base::{job, limits};
+use crate::geometry::Motion;
 use crate::io::cad::base_surface::Base;
 use crate::io::cad::defect::Defect;
 use crate::io::cad::face::Face;
@@ -22,7 +23,9 @@ use crate::io::iges::levels::Levels;
 use crate::io::iges::open::OpenedIges;
 
 /// Kinds of entities that hold faces.
-const FACES: &[u32] = &[186, 510, 514];
+const FACES: &[u32] = &[184, 186, 308, 408, 430, 510, 514];
+/// Kinds of entities that hold faces and are not read: solids by form, swept and combined ones, arrays, instances in networks.
+const UNREAD: &[u32] = &[150, 152, 154, 156, 158, 160, 162, 164, 168, 180, 182, 412, 414, 420];
 /// Kinds of entities that surfaces are.
 const SURFACES: &[u32] = &[108, 114, 118, 120, 122, 128, 140, 143, 144, 190, 192, 194, 196, 198];
 /// Kinds of entities that curves are.
@@ -53,57 +56,59 @@ impl OpenedIges {
             names: UniqueNames::default(),
             shades: Shades::default(),
             levels: Levels::default(),
+            at: None,
+            node: None,
+            faces: BTreeMap::new(),
+            instances: BTreeMap::new(),
+            definitions: BTreeMap::new(),
         }
         .run()
     }
 }
 
-struct IgesPartBuilder {
-    table: EntityTable,
-    part: Part,
-    made: BTreeMap<Pointer, ItemPlace>,
-    names: UniqueNames,
-    shades: Shades,
-    levels: Levels,
+/// A part while it is made.
+pub(super) struct IgesPartBuilder {
+    pub(super) table: EntityTable,
+    pub(super) part: Part,
+    pub(super) made: BTreeMap<Pointer, ItemPlace>,
+    pub(super) names: UniqueNames,
+    pub(super) shades: Shades,
+    pub(super) levels: Levels,
+    /// From the frame of what is made now to that of the model, inside an instance.
+    pub(super) at: Option<Motion>,
+    /// The place of the product that it is of.
+    pub(super) node: Option<usize>,
+    /// Faces that instances place.
+    pub(super) faces: BTreeMap<Pointer, Result<Face, Defect>>,
+    /// What instances hold.
+    pub(super) instances: BTreeMap<Pointer, Group>,
+    /// The first node of each definition.
+    pub(super) definitions: BTreeMap<Pointer, usize>,
 }
 
 impl IgesPartBuilder {
     fn run(mut self) -> Part {
         let (parts, members) = self.relations();
-        let mut groups = Vec::new();
+        let (mut groups, mut instances) = (Vec::new(), Vec::new());
         for k in 0..self.table.entries.len() {
             job::poll();
             let entry = &self.table.entries[k];
-            let (d, kind, status) = (entry.d, entry.kind, entry.status);
+            let (d, status) = (entry.d, entry.status);
             // Faces and shells may be marked as parts although nothing has them.
             let is_bare = matches!(self.table.decoded[k].data, Data::Face { .. } | Data::Shell(_)) && !parts.contains(&d);
             let alone = !status.physically_dependent || members.contains(&d) || is_bare;
             if status.blanked || !PURPOSES.contains(&status.purpose) || !alone || parts.contains(&d) {
                 continue;
             }
-            match (kind, &self.table.decoded[k].data) {
-                (_, Data::Group(_) | Data::Shell(_) | Data::Solid { .. }) => groups.push(d),
-                (_, Data::Damaged) if SURFACES.contains(&kind) || FACES.contains(&kind) => {
-                    self.unusable(d, "its parameters cannot be read".to_owned());
-                }
-                (_, Data::Damaged) => {}
-                (_, Data::Point(p)) => {
-                    let points = vec![*p];
-                    self.points(d, points);
-                }
-                (_, Data::Points { points, is_line: false }) => {
-                    let points = points.clone();
-                    self.points(d, points);
-                }
-                _ if CURVES.contains(&kind) || kind == 106 => self.curve(d),
-                (_, Data::Face { .. }) => self.surface(d, false),
-                _ if SURFACES.contains(&kind) => self.surface(d, false),
-                _ => {}
-            }
+            if self.table.decoded[k].data.is_instance() { instances.push(d) } else { self.show(d, &mut groups) }
+        }
+        for d in instances {
+            self.instance(d, 0);
         }
         for d in groups {
             self.group(d);
         }
+        self.unplaced();
         self.unknown();
         self.gaps();
         self.part.layers = std::mem::take(&mut self.levels).layers(&self.table);
@@ -111,9 +116,35 @@ impl IgesPartBuilder {
         self.part
     }
 
+    /// Makes what an entity is; groups and solids come later.
+    pub(super) fn show(&mut self, d: Pointer, groups: &mut Vec<Pointer>) {
+        let Ok(k) = self.table.place(d) else { return };
+        let kind = self.table.entries[k].kind;
+        match &self.table.decoded[k].data {
+            Data::Group(_) | Data::Shell(_) | Data::Solid { .. } => groups.push(d),
+            Data::Damaged if SURFACES.contains(&kind) || FACES.contains(&kind) => {
+                self.unusable(d, "its parameters cannot be read".to_owned());
+            }
+            Data::Unknown if UNREAD.contains(&kind) => self.unusable(d, format!("entities of type {kind} are not read")),
+            Data::Damaged => {}
+            Data::Point(p) => {
+                let points = vec![*p];
+                self.points(d, points);
+            }
+            Data::Points { points, is_line: false } => {
+                let points = points.clone();
+                self.points(d, points);
+            }
+            _ if CURVES.contains(&kind) || kind == 106 => self.curve(d),
+            Data::Face { .. } => self.surface(d, false),
+            _ if SURFACES.contains(&kind) => self.surface(d, false),
+            _ => {}
+        }
+    }
+
     /// Surfaces that are only the ground of faces, faces of shells and shells of solids, and what visible groups hold.
     fn relations(&self) -> (BTreeSet<Pointer>, BTreeSet<Pointer>) {
-        let (mut parts, mut members) = (BTreeSet::new(), BTreeSet::new());
+        let (mut parts, mut members) = (self.table.placed_parts(), BTreeSet::new());
         for (entry, decoded) in self.table.entries.iter().zip(&self.table.decoded) {
             match &decoded.data {
                 Data::Trimmed { surface, .. }
@@ -136,7 +167,8 @@ impl IgesPartBuilder {
             Ok(matrix) => matrix,
             Err(Defect(why)) => return self.skipped(d, &why),
         };
-        let place = |p: DVec3| matrix.map_or(p * self.table.scale, |m| m.transform_point3(p * self.table.scale));
+        let own = |p: DVec3| matrix.map_or(p * self.table.scale, |m| m.transform_point3(p * self.table.scale));
+        let place = |p: DVec3| self.at.map_or(own(p), |at| at.point(own(p)));
         let value: Vec<DVec3> = points.into_iter().map(place).collect();
         if value.iter().any(|p| p.abs().max_element() > limits::COORDINATE) {
             return self.skipped(d, "its coordinates are too large");
@@ -150,6 +182,7 @@ impl IgesPartBuilder {
         match self.table.curve(d, CurveRequest::SPACE) {
             Ok(curve) if curve.length() <= self.table.tolerance.point => self.skipped(d, "it is shorter than the tolerance"),
             Ok(curve) => {
+                let curve = self.at.map_or(curve.clone(), |at| curve.moved(&at));
                 self.made.insert(d, ItemPlace::Curve(self.part.curves.len()));
                 let item = self.item(d, "curve", self.part.curves.len(), curve);
                 self.part.curves.push(item);
@@ -163,10 +196,15 @@ impl IgesPartBuilder {
             self.table.data(d),
             Ok(Data::Trimmed { .. } | Data::Bounded { .. } | Data::Face { .. } | Data::Plane { border: 1.., .. })
         );
-        let made = if is_face { self.table.face(d) } else { self.table.whole(d) };
+        let mut make = || if is_face { self.table.face(d) } else { self.table.whole(d) };
+        let made = match &self.at {
+            Some(at) => self.faces.entry(d).or_insert_with(make).as_ref().map(|face| (face.moved(at), at.mirrors())).map_err(Clone::clone),
+            None => make().map(|face| (face, false)),
+        };
         match made {
-            Ok(mut face) => {
-                face.flipped = flipped;
+            Ok((mut face, mirrored)) => {
+                face.flipped = flipped != mirrored;
+                self.part.standing.push(self.node);
                 self.made.insert(d, ItemPlace::Surface(self.part.surfaces.len()));
                 let item = self.item(d, "surface", self.part.surfaces.len(), face);
                 self.part.surfaces.push(item);
@@ -176,11 +214,11 @@ impl IgesPartBuilder {
     }
 
     /// Leaves out a face.
-    fn unusable(&mut self, d: Pointer, cause: String) {
+    pub(super) fn unusable(&mut self, d: Pointer, cause: String) {
         self.part.unusable.push(Unusable { face: None, entity: self.table.label(d), line: self.table.line(d), cause, least_area: 0.0 });
     }
 
-    fn skipped(&mut self, d: Pointer, why: &str) {
+    pub(super) fn skipped(&mut self, d: Pointer, why: &str) {
         self.table.warn(d, format!("skipped: {why}"));
     }
 
@@ -198,6 +236,13 @@ impl IgesPartBuilder {
 
     /// The name property, else the label, else a word and a number; with another number where it is taken. Behind it what the file has.
     fn name(&mut self, d: Pointer, word: &str, before: usize) -> (String, Option<String>) {
+        let own = self.named(d);
+        let wanted = own.clone().unwrap_or_else(|| format!("{word}{}", before + 1));
+        (self.names.give(&wanted), own)
+    }
+
+    /// The name property, else the label.
+    pub(super) fn named(&self, d: Pointer) -> Option<String> {
         let given = self.table.place(d).ok().and_then(|k| {
             let names = self.table.decoded[k].properties.iter().filter_map(|p| match self.table.data(*p) {
                 Ok(Data::Name(name)) if !name.is_empty() => Some(name.clone()),
@@ -209,9 +254,7 @@ impl IgesPartBuilder {
             0 => e.label.clone(),
             n => format!("{}{n}", e.label),
         });
-        let own = given.or(label);
-        let wanted = own.clone().unwrap_or_else(|| format!("{word}{}", before + 1));
-        (self.names.give(&wanted), own)
+        given.or(label)
     }
 
     /// Colour with the file's name for it.
@@ -228,10 +271,19 @@ impl IgesPartBuilder {
     }
 
     /// A group of what its members are; faces of shells are made here.
-    fn group(&mut self, d: Pointer) {
+    pub(super) fn group(&mut self, d: Pointer) {
         let mut group = Group::default();
         let mut seen = BTreeSet::new();
-        if let Err(Defect(why)) = self.gather(d, &mut group, &mut seen, 0) {
+        let around = self.at;
+        let is_body = matches!(self.table.data(d), Ok(Data::Solid { .. } | Data::Shell(_)));
+        match self.table.motion(self.table.entry(d).filter(|_| is_body).map_or(0, |e| e.transform)) {
+            Ok(own) if own != Motion::translation(DVec3::ZERO) => self.at = Some(around.map_or(own, |at| own.then(&at))),
+            Ok(_) => {}
+            Err(Defect(why)) => return self.unusable(d, why),
+        }
+        let gathered = self.gather(d, &mut group, &mut seen, 0);
+        self.at = around;
+        if let Err(Defect(why)) = gathered {
             self.skipped(d, &why);
         }
         if group.is_empty() {
@@ -278,6 +330,11 @@ impl IgesPartBuilder {
             None => {
                 let inside: Vec<(Pointer, Option<bool>)> = match self.table.data(d) {
                     Ok(Data::Group(list)) => list.iter().map(|m| (*m, None)).collect(),
+                    Ok(data) if data.is_instance() => {
+                        let held = self.instances.get(&d).map_or(Vec::new(), Group::members);
+                        held.into_iter().for_each(|member| group.put(member));
+                        return Ok(());
+                    }
                     Ok(Data::Solid { shells }) => shells.iter().map(|m| (*m, None)).collect(),
                     Ok(Data::Shell(faces)) => faces.iter().map(|(m, along)| (*m, Some(*along))).collect(),
                     _ => return Ok(()),
@@ -311,7 +368,7 @@ impl IgesPartBuilder {
     fn unknown(&mut self) {
         let mut kinds: BTreeMap<(u32, i32), (u64, usize)> = BTreeMap::new();
         for (entry, decoded) in self.table.entries.iter().zip(&self.table.decoded) {
-            if decoded.data == Data::Unknown && !entry.status.blanked {
+            if decoded.data == Data::Unknown && !entry.status.blanked && !UNREAD.contains(&entry.kind) {
                 kinds.entry((entry.kind, entry.form)).or_insert((entry.line, 0)).1 += 1;
             }
         }

@@ -8,7 +8,7 @@ use crate::base::bbox::Box3;
 use crate::base::tolerance::Tolerance;
 use crate::io::cad::healing::{Repair, Rule};
 use crate::io::cad::part::{Group, Part, ReadOptions, Unusable};
-use crate::io::files::fault::{ContentFault, Malformed};
+use crate::io::files::fault::{ContentFault, Malformed, Share};
 use crate::io::{iges, step};
 use crate::lang::declare::imports::ImportedFile;
 use crate::lang::eval::context::Cx;
@@ -22,6 +22,9 @@ use crate::lang::values::units::MILLIMETRE;
 use crate::lang::values::value::{ModuleId, Record, Value};
 use crate::network::Chain;
 use crate::surface::Surface;
+
+/// Share of the area of a file that may be missing without an error.
+const LITTLE: f64 = 0.5;
 
 impl Cx<'_> {
     /// An IGES file.
@@ -61,6 +64,9 @@ impl Cx<'_> {
             // What is as exact as the file says is nothing to warn of.
             warnings.extend(part.repairs.iter().filter(|repair| repair.rule != Rule::Accuracy).map(told));
         }
+        if !file.incomplete {
+            self.refuse_little(file, &part, &warnings)?;
+        }
         let notes = warnings.clone();
         self.repaired(file, warnings);
         let value = self.part(file, &part, notes);
@@ -74,6 +80,22 @@ impl Cx<'_> {
             self.say(&ContentFault::Doubled { of: file.origin, path: file.path.to_owned(), pairs }.into());
         }
         Ok(value)
+    }
+
+    /// E815 for a file of which nothing came in, or less than half of its faces.
+    fn refuse_little(&self, file: &ImportedFile, part: &Part, warnings: &[Malformed]) -> Result<(), Halt> {
+        let came = part.built.iter().filter(|made| !made.is_empty()).count();
+        let share = part.share_missing().map_or(0.0, |share| match share {
+            Share::Stated(share) | Share::AtLeast(share) => share,
+        });
+        let is_nothing = came == 0 && part.points.is_empty() && part.curves.is_empty();
+        let is_little = !part.unusable.is_empty() && (share > LITTLE || part.unusable.len() > came);
+        if !is_nothing && !is_little {
+            return Ok(());
+        }
+        let unusable = part.unusable.iter().map(|face| Malformed::line(face.line, format!("{}: {}", face.entity, face.cause)));
+        let unread = unusable.chain(warnings.iter().cloned()).collect();
+        Err(ContentFault::Little { of: file.origin, path: file.path.to_owned(), faces: (came, part.n_faces()), unread }.into())
     }
 
     fn part(&mut self, file: &ImportedFile, part: &Part, notes: Vec<Malformed>) -> Value {

@@ -28,6 +28,9 @@ const REPAIRS_SAID: usize = 5;
 /// Endings that can be imported.
 const ENDINGS: &[&str] = &["csv", "dat", "txt", "json", "obj", "stl", "igs", "iges", "stp", "step", "p21"];
 
+/// Endings of CAD files.
+const CAD: &[&str] = &["igs", "iges", "stp", "step", "p21"];
+
 /// Endings of tables, which may have a header.
 const TABLES: &[&str] = &["csv", "dat", "txt"];
 
@@ -37,6 +40,16 @@ pub(crate) struct ImportedFile<'f> {
     pub origin: Origin,
     pub unit: Option<LengthUnit>,
     header: Option<bool>,
+    /// Little of it is enough.
+    pub incomplete: bool,
+}
+
+/// Arguments of `import`.
+#[derive(Default)]
+struct ImportArgs {
+    header: Option<bool>,
+    unit: Option<LengthUnit>,
+    incomplete: bool,
 }
 
 impl ImportedFile<'_> {
@@ -57,11 +70,11 @@ impl Cx<'_> {
         if !ENDINGS.contains(&ending.as_str()) {
             return Err(FormatFault::NoSuchFormat { of: origin, path: written, known: ENDINGS.to_vec() }.into());
         }
-        let (header, unit) = self.import_args(code, args, &ending)?;
+        let ImportArgs { header, unit, incomplete } = self.import_args(code, args, &ending)?;
         let from = self.machine.at(code.module).path.clone();
         let resolved = self.files.resolve(&from, &written).map_err(|e| file_fault(e, &written, origin))?;
         let bytes = self.files.read(&resolved, limits::DATA_BYTES).map_err(|e| file_fault(e, &written, origin))?;
-        let file = ImportedFile { path: &written, origin, unit, header };
+        let file = ImportedFile { path: &written, origin, unit, header, incomplete };
         match ending.as_str() {
             "json" => {
                 let json = io::tables::json::read(&bytes).map_err(|at| file.malformed(at))?;
@@ -87,29 +100,33 @@ impl Cx<'_> {
         }
     }
 
-    /// `header:` and `unit:`; E303 for one that files of this ending have no use for.
-    fn import_args(&mut self, code: Code<'_>, args: &[Arg], ending: &str) -> Result<(Option<bool>, Option<LengthUnit>), Halt> {
+    /// `header:`, `unit:` and `incomplete:`; E303 for one that files of this ending have no use for.
+    fn import_args(&mut self, code: Code<'_>, args: &[Arg], ending: &str) -> Result<ImportArgs, Halt> {
         let shown = "import \"…\" (header: true, unit: m)".to_owned();
         let signature = Signature { name: "import", params: IMPORT.iter().map(|setting| setting.key).collect(), rest: None, shown };
         let places = self.match_args(code, &signature, 0, args)?;
-        let (mut header, mut unit, mut gather) = (None, None, Gather::default());
+        let (mut found, mut gather) = (ImportArgs::default(), Gather::default());
         for (arg, k) in args.iter().zip(places) {
             let (ty, subject) = (IMPORT[k].ty, format!("`{}`", IMPORT[k].key));
-            let idle = if k == 0 { !TABLES.contains(&ending) } else { ending == "json" };
+            let (idle, of) = match IMPORT[k].key {
+                "header" => (!TABLES.contains(&ending), "tables: .csv .dat .txt"),
+                "incomplete" => (!CAD.contains(&ending), "CAD files: .igs .iges .stp .step .p21"),
+                _ => (ending == "json", "files of lengths, which are bare numbers in them"),
+            };
             if idle {
                 let text = format!("{subject} does not apply to a {ending} file");
                 let draft = self.error(code, "E303", text, code.span(arg.value), "no such argument here");
-                let of = if k == 0 { "tables: .csv .dat .txt" } else { "files of lengths, which are bare numbers in them" };
                 gather.take::<()>(Err(draft.note(format!("it is for {of}")).stop()));
                 continue;
             }
             match gather.take(self.eval_as(code, arg.value, ty, &subject)) {
-                Some(Value::Bool(b)) => header = Some(b),
-                Some(Value::Word(w)) => unit = units::file_unit(&w),
+                Some(Value::Bool(b)) if IMPORT[k].key == "incomplete" => found.incomplete = b,
+                Some(Value::Bool(b)) => found.header = Some(b),
+                Some(Value::Word(w)) => found.unit = units::file_unit(&w),
                 _ => {}
             }
         }
-        gather.done().map(|()| (header, unit))
+        gather.done().map(|()| found)
     }
 
     pub(crate) fn repaired(&mut self, file: &ImportedFile, repairs: Vec<Malformed>) {

@@ -217,6 +217,7 @@ codes! {
     now "E812", "one-file-twice", "several outputs are one file";
     now "E813", "output-over-input", "an output would replace a file that is read";
     now "W814", "body-twice", "a body stands twice in the same place";
+    now "E815", "little-read", "little of a file could be read";
     now "E901", "check-failed", "a check failed";
     now "E902", "golden-differs", "a golden differs";
     now "E903", "raised", "the script reports an error";

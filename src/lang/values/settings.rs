@@ -155,6 +155,13 @@ pub const IMPORT: &[Setting] = &[
         ty: Ty::Choice(FILE_UNITS),
         range: &[],
     },
+    Setting {
+        key: "incomplete",
+        docs: "Takes a CAD file of which nothing, or less than half, could be read.",
+        default: "false: that is an error",
+        ty: Ty::Bool,
+        range: &[],
+    },
 ];
 
 /// `picture things to "…" { … }`.

@@ -59,6 +59,17 @@ pub enum ContentFault {
         /// All are listed.
         whole: bool,
     },
+    /// E815: nothing of a file, or less than half, could be read.
+    Little {
+        /// The import.
+        of: Origin,
+        /// As written.
+        path: String,
+        /// How many faces came in, of how many that the file has.
+        faces: (usize, usize),
+        /// What could not be read, with the cause.
+        unread: Vec<Malformed>,
+    },
     /// W814: bodies of a file that stand where the same one stands already.
     Doubled {
         /// The import.
@@ -100,13 +111,14 @@ impl Malformed {
 }
 
 impl Describe for ContentFault {
-    codes! { Malformed "E803", Repaired "W810", Unusable "W726", Doubled "W814", ImportCycle "E809" }
+    codes! { Malformed "E803", Repaired "W810", Unusable "W726", Little "E815", Doubled "W814", ImportCycle "E809" }
 
     fn describe(&self, _: &dyn Say) -> Report {
         match self {
             Self::Malformed { of, path, at } => Report::new(format!("\"{path}\"{}: {}", at.place(), at.what)).at(*of, "imported here"),
             Self::Repaired { of, path, at } => Report::new(format!("\"{path}\"{}: {}", at.place(), at.what)).at(*of, "imported here"),
             Self::Unusable { of, path, total, faces, share, whole } => unusable(*of, path, *total, faces, *share, *whole),
+            Self::Little { of, path, faces, unread } => little(*of, path, *faces, unread),
             Self::Doubled { of, path, pairs } => doubled(*of, path, pairs),
             Self::ImportCycle { of, ring } => {
                 Report::new(format!("modules import each other: {}", ring.join(" → "))).at(*of, "closes the cycle")
@@ -133,6 +145,14 @@ fn unusable(of: Origin, path: &str, total: usize, faces: &[Malformed], share: Op
         0 => report,
         more => report.note(format!("and {more} more, which `loft explain` lists with the name of the part")),
     }
+}
+
+/// E815: how little of a file was read, and why.
+fn little(of: Origin, path: &str, (came, total): (usize, usize), unread: &[Malformed]) -> Report {
+    let what = if came == 0 { "nothing".to_owned() } else { format!("only {came} of {total} faces") };
+    let report = Report::new(format!("{what} of \"{path}\" could be read")).at(of, "imported here");
+    let report = unread.iter().take(FACES_LISTED).fold(report, |r, at| r.note(format!("line {}: {}", at.line, at.what)));
+    report.help("`(incomplete: true)` behind the path takes what there is")
 }
 
 /// W814: which bodies stand in the place of which.
