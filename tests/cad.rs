@@ -46,7 +46,7 @@ fn of_surfaces(surfaces: Vec<Surface>, tolerance: Tolerance, snap: Option<f64>) 
     model.check().unwrap();
     let all = (0..model.surfaces.len()).map(SurfaceId::at).collect();
     let snap = snap.map(|d| (d, Origin::NONE));
-    let request = ShellRequest { name: "skin".to_owned(), surfaces: all, snap, branches: false, origin: Origin::NONE };
+    let request = ShellRequest { name: "skin".to_owned(), surfaces: all, snap, branches: false, touches: false, origin: Origin::NONE };
     let mut said = Vec::new();
     let shell = model.shell(&request, &network, &tolerance, &mut said)?;
     Ok(Skin { model, tolerance, shell, said })

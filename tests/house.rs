@@ -105,7 +105,7 @@ const CEILINGS: &[(&str, usize)] = &[
     ("geometry", 6_550),
     ("network", 5_150),
     ("surface", 31_200),
-    ("model", 7_300),
+    ("model", 7_400),
     ("mesh", 34_900),
     ("hydrostatics", 2_300),
     ("io", 19_000),

@@ -198,6 +198,7 @@ fn figure_2_2_is_an_open_shell_and_meshes_conform() {
         surfaces: vec![SurfaceId(0), SurfaceId(1)],
         snap: None,
         branches: false,
+        touches: false,
         origin: Origin::NONE,
     };
     let mut sink = Vec::new();
@@ -266,8 +267,14 @@ fn neighbours_share_nodes_where_one_side_meets_two() {
         coons_of(&[half(0.5, 1.0), chain(&low[4]), chain(&low[1]), chain(&low[3])]),
     ];
     let scene = Scene::new(&curves, surfaces);
-    let request =
-        ShellRequest { name: "s".to_owned(), surfaces: (0..3).map(SurfaceId).collect(), snap: None, branches: false, origin: Origin::NONE };
+    let request = ShellRequest {
+        name: "s".to_owned(),
+        surfaces: (0..3).map(SurfaceId).collect(),
+        snap: None,
+        branches: false,
+        touches: false,
+        origin: Origin::NONE,
+    };
     let shell = scene.model.shell(&request, &scene.network, &tolerance(), &mut Vec::new()).unwrap();
     let mut plan = scene.plan();
     plan.surfaces = shell.surfaces;
@@ -381,6 +388,7 @@ fn a_ball_of_two_lunes_is_a_closed_shell() {
         surfaces: vec![SurfaceId(0), SurfaceId(1)],
         snap: None,
         branches: false,
+        touches: false,
         origin: Origin::NONE,
     };
     let shell = scene.model.shell(&request, &scene.network, &tolerance(), &mut Vec::new()).unwrap();
@@ -413,6 +421,7 @@ fn shells_refuse_three_faces_at_an_edge_and_apart_ones() {
             surfaces: list.iter().map(|k| SurfaceId(*k)).collect(),
             snap: None,
             branches: false,
+            touches: false,
             origin: Origin::NONE,
         };
         scene.model.shell(&request, &scene.network, &tolerance(), &mut Vec::new()).map(|s| s.surfaces).map_err(|f| f.code().0)

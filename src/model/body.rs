@@ -111,7 +111,7 @@ impl Model {
         body.slivers = slivers;
         body.join_corners();
         body.join_seams(self, tolerance);
-        body.part_skins();
+        body.part_skins(shell.closed);
         self.nest(&mut body, tolerance)?;
         Ok(body)
     }
@@ -282,22 +282,24 @@ impl Body {
         if against { (last, first) } else { (first, last) }
     }
 
-    /// Parts the faces into what hangs together by edges that two of them share.
-    fn part_skins(&mut self) {
+    /// Parts the faces into what hangs together by edges that two of them share; of a closed shell, which may touch itself, by all edges.
+    fn part_skins(&mut self, closed: bool) {
         let mut users: Vec<Vec<(usize, bool)>> = vec![Vec::new(); self.edges.len()];
         for (k, face) in self.faces.iter().enumerate() {
             face.loops.iter().flatten().for_each(|(edge, against)| users[*edge].push((k, *against)));
         }
         let mut parent: Vec<usize> = (0..self.faces.len()).collect();
-        for pair in users.iter().filter(|u| u.len() == 2) {
-            join(&mut parent, pair[0].0, pair[1].0);
+        for users in users.iter().filter(|u| u.len() == 2 || closed) {
+            users.windows(2).for_each(|pair| join(&mut parent, pair[0].0, pair[1].0));
         }
         let mut skins: BTreeMap<usize, Skin> = BTreeMap::new();
         for k in 0..self.faces.len() {
             let own = root(&mut parent, k);
             skins.entry(own).or_insert_with(|| Skin { faces: Vec::new(), closed: true, within: None }).faces.push(k);
         }
-        let is_inner = |users: &[(usize, bool)]| matches!(users, [a, b] if a.1 != b.1);
+        let is_inner = |users: &[(usize, bool)]| {
+            (users.len() == 2 || closed) && 2 * users.iter().filter(|(_, against)| *against).count() == users.len()
+        };
         for (face, _) in users.iter().filter(|u| !is_inner(u)).flatten() {
             if let Some(skin) = skins.get_mut(&root(&mut parent, *face)) {
                 skin.closed = false;

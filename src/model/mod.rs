@@ -1,6 +1,7 @@
 //! Floor 4: patches, edges, vertices, loops and shells cut and glued from surfaces.
 
 pub mod apart;
+mod around_edge;
 pub mod body;
 pub mod carry;
 pub mod contact;

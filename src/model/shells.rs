@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec3;
 
+use super::around_edge::Paired;
 use super::gather::Station;
 use super::glue::preference;
 use super::segments::{Part, Segments, segments};
@@ -54,14 +55,15 @@ impl Model {
         let members: BTreeSet<SurfaceId> = request.surfaces.iter().copied().collect();
         let sewn = self.sewn(request, &members, network, tolerance);
         let Sewn { near, joins, slivers, usages } = &sewn;
+        let paired = request.touches.then(|| self.paired(joins, usages));
         let pieces = &joins.pieces;
         let free: Vec<usize> = (0..usages.len()).filter(|a| usages[*a].len() == 1).collect();
         let seams = Seams { model: self, joins };
         seams.refuse_gaps(request, &free)?;
         if !request.branches {
-            self.manifold(request, joins, usages)?;
+            self.manifold(request, &sewn, paired.as_ref())?;
         }
-        let sides = self.orient(request, &sewn, tolerance, sink)?;
+        let sides = self.orient(request, &sewn, paired.as_ref(), tolerance, sink)?;
         seams.report(request, slivers, tolerance, sink);
         if let Some(longest) = free.iter().copied().max_by(|a, b| pieces.segments[*a].length().total_cmp(&pieces.segments[*b].length())) {
             let length = free.iter().map(|a| pieces.segments[*a].length()).sum();
@@ -76,7 +78,7 @@ impl Model {
             origin: request.origin,
             surfaces: sides,
             near: *near,
-            closed: free.is_empty() && usages.iter().all(|u| u.len() <= 2),
+            closed: free.is_empty() && usages.iter().all(|u| u.len() <= 2 || request.touches && u.len() % 2 == 0),
             free,
         })
     }
@@ -88,7 +90,8 @@ impl Model {
         let least = self.own_gap(members.iter().copied()).max(tolerance.point);
         if request.snap.is_none() && least < most {
             let sewn = self.sewn_over(members, least, network, tolerance);
-            if sewn.usages.iter().all(|users| matches!(users.len(), 0 | 2)) {
+            let joins = |n: usize| matches!(n, 0 | 2) || request.touches && n % 2 == 0;
+            if sewn.usages.iter().all(|users| joins(users.len())) {
                 return sewn;
             }
         }
@@ -141,9 +144,10 @@ impl Model {
     }
 
     /// E617 where more than two faces share a segment.
-    fn manifold(&self, request: &ShellRequest, joins: &Joins, usages: &[Vec<Usage>]) -> Result<()> {
+    fn manifold(&self, request: &ShellRequest, sewn: &Sewn, paired: Option<&Paired>) -> Result<()> {
+        let Sewn { joins, usages, .. } = sewn;
         for (segment, users) in usages.iter().enumerate() {
-            if users.len() > 2 {
+            if users.len() > 2 && paired.is_none_or(|paired| paired.has_more_than_two(segment)) {
                 let at = joins.middle(segment);
                 let users = users.iter().map(|(s, _)| self.origin_of(*s)).collect();
                 return Err(ShellFault::NonManifold { shell: request.origin, users, at }.into());
@@ -153,12 +157,19 @@ impl Model {
     }
 
     /// Each surface with its side: `true` for the other one. E616 for a skin with one side, E618 for open ones that do not hang together.
-    fn orient(&self, request: &ShellRequest, sewn: &Sewn, tolerance: &Tolerance, sink: &mut Vec<Fault>) -> Result<Vec<(SurfaceId, bool)>> {
+    fn orient(
+        &self,
+        request: &ShellRequest,
+        sewn: &Sewn,
+        paired: Option<&Paired>,
+        tolerance: &Tolerance,
+        sink: &mut Vec<Fault>,
+    ) -> Result<Vec<(SurfaceId, bool)>> {
         let whole: Vec<SurfaceId> = request.surfaces.iter().copied().filter(|s| !self.is_thin(*s, &sewn.slivers)).collect();
-        let mut components = components(&whole, &sewn.usages);
+        let mut components = components(&whole, paired.map_or(&sewn.usages, |paired| &paired.usages));
         if let Some(one_sided) = components.iter().find_map(|c| c.one_sided.as_ref()) {
             let (a, b) = (self.origin_of(one_sided.faces.0), self.origin_of(one_sided.faces.1));
-            let at = sewn.joins.middle(one_sided.segment);
+            let at = sewn.joins.middle(paired.map_or(one_sided.segment, |paired| paired.segments[one_sided.segment]));
             return Err(ShellFault::NotOrientable { shell: request.origin, a, b, at }.into());
         }
         match components.as_slice() {
@@ -210,6 +221,8 @@ pub struct ShellRequest {
     pub snap: Option<(f64, Origin)>,
     /// More than two faces may share an edge, and pieces may lie apart.
     pub branches: bool,
+    /// They bound a solid, which may touch itself along edges and at vertices.
+    pub touches: bool,
     /// The declaration.
     pub origin: Origin,
 }

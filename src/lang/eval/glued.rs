@@ -57,7 +57,8 @@ impl Asked {
     fn is_of(&self, shell: &ShellValue) -> bool {
         let Self { of, .. } = self;
         let same = || of.surfaces.iter().zip(&shell.surfaces).all(|(a, b)| a.is(b));
-        (of.origin, &of.name, of.snap, of.imprint, of.flip) == (shell.origin, &shell.name, shell.snap, shell.imprint, shell.flip)
+        (of.origin, &of.name, of.snap, of.imprint, of.flip, of.body)
+            == (shell.origin, &shell.name, shell.snap, shell.imprint, shell.flip, shell.body)
             && of.surfaces.len() == shell.surfaces.len()
             && same()
     }

@@ -14,7 +14,7 @@ use crate::lang::eval::halt::Halt;
 use crate::lang::eval::module::State;
 use crate::lang::eval::stages;
 use crate::lang::syntax::ast::Keyword;
-use crate::lang::values::value::{EntityHome, ModuleId, ShellValue, Value};
+use crate::lang::values::value::{BodyKind, EntityHome, ModuleId, ShellValue, Value};
 use crate::model::topology::Named;
 use crate::model::{Model, SharedEdge, Shell, ShellRequest, SurfaceId};
 use crate::network::{Chain, Network};
@@ -127,6 +127,7 @@ impl Scene {
             surfaces,
             snap: shell.snap,
             branches: shell.imprint.is_some(),
+            touches: shell.body == Some(BodyKind::Solid),
             origin: shell.origin,
         };
         let mut built = self.model.shell(&request, &self.network, tolerance, sink)?;

@@ -1,5 +1,7 @@
 //! Edges of the elements of a mesh, with how often elements run along them each way.
 
+use std::collections::BTreeSet;
+
 use crate::base::job;
 use crate::mesh::data::mesh::Mesh;
 
@@ -71,7 +73,8 @@ fn each_side(mesh: &Mesh, mut side: impl FnMut(u32, u32)) {
 }
 
 impl Mesh {
-    /// Whether each edge of the faces is used once in each sense: a closed skin without gaps.
+    /// Whether each edge of the faces is used as often in one sense as in the other: a closed skin without gaps, which may touch itself along
+    /// an edge, but has no element twice.
     pub fn is_watertight(&self) -> bool {
         if self.triangles.is_empty() && self.quads.is_empty() {
             return false;
@@ -79,7 +82,26 @@ impl Mesh {
         // Each direction adds or subtracts a pseudo-random number drawn from the nodes: the sum is not zero where an edge is used once only.
         let mut left_over = 0_u64;
         each_side(self, |a, b| left_over = left_over.wrapping_add(signed(a, b)));
-        left_over == 0 && SidesByNode::new(self).edges().all(|edge| (edge.forwards, edge.backwards) == (1, 1))
+        let mut shared = BTreeSet::new();
+        let is_even = |edge: EdgeUse| {
+            if edge.forwards > 1 {
+                shared.insert(edge.nodes);
+            }
+            edge.forwards == edge.backwards
+        };
+        left_over == 0 && SidesByNode::new(self).edges().all(is_even) && !self.has_twice(&shared)
+    }
+
+    /// Whether two elements at some edges have the same nodes.
+    fn has_twice(&self, edges: &BTreeSet<[u32; 2]>) -> bool {
+        let mut seen = BTreeSet::new();
+        let mut is_again = |mut nodes: Vec<u32>| {
+            let sides = nodes.iter().zip(nodes.iter().cycle().skip(1));
+            let at_edge = sides.map(|(a, b)| [*a.min(b), *a.max(b)]).any(|edge| edges.contains(&edge));
+            nodes.sort_unstable();
+            at_edge && !seen.insert(nodes)
+        };
+        !edges.is_empty() && (self.triangles.iter().any(|t| is_again(t.to_vec())) || self.quads.iter().any(|q| is_again(q.to_vec())))
     }
 
     /// Lengths of all edges (of lines, triangles and quads), each once, model units, in the order of their nodes.

@@ -75,7 +75,8 @@ fn closed_of(cx: &mut Cx, things: Vec<Value>, (name, origin): (Arc<str>, Origin)
         _ if surfaces.is_empty() => {}
         shells => {
             let snap = shells.iter().filter_map(|shell| shell.snap).max_by(|a, b| a.0.total_cmp(&b.0));
-            closed.push(Arc::new(ShellValue { name, module, origin, surfaces, snap, imprint: None, flip: false, body: None }));
+            let body = Some(BodyKind::Solid);
+            closed.push(Arc::new(ShellValue { name, module, origin, surfaces, snap, imprint: None, flip: false, body }));
         }
     }
     Ok(closed)
