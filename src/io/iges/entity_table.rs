@@ -22,6 +22,9 @@ const COPIES_PER_BYTE: usize = 4;
 /// What may be copied in any case.
 const COPIES: usize = 1 << 20;
 
+/// Kinds of entities that are lists: what stands behind those is lost.
+const LISTS: &[u32] = &[141, 143, 144, 184, 186, 308, 502, 504, 508, 510, 514];
+
 /// Entities by pointer, with what was made of them.
 #[derive(Debug)]
 pub struct EntityTable {
@@ -48,6 +51,8 @@ pub struct EntityTable {
     pub warnings: Vec<Malformed>,
     /// Curves made so far, in space and in (u, v).
     pub(super) curves: BTreeMap<(Pointer, bool), Result<Curve, Defect>>,
+    /// The largest distance of a vertex from the curve of its edge, beyond what the file calls one point, with that curve.
+    pub(super) vertex_off: Option<(f64, Pointer)>,
     /// Copies still allowed.
     left: usize,
 }
@@ -69,6 +74,7 @@ impl EntityTable {
             origin: options.origin,
             warnings: Vec::new(),
             curves: BTreeMap::new(),
+            vertex_off: None,
             left: COPIES + COPIES_PER_BYTE * bytes,
         };
         let mut spilled = (0, 0);
@@ -195,7 +201,9 @@ fn read_one(entry: &Entry, text: &[u8], list: &crate::io::iges::params::Tokens) 
         return Err(defect(format!("its parameters are those of an entity {kind}")));
     }
     let decoded = decode(entry, &mut reader)?;
-    let note = if !list.ended {
+    let note = if reader.is_uncounted() && LISTS.contains(&entry.kind) {
+        Some("more values follow than its counts say; they are not read".to_owned())
+    } else if !list.ended {
         Some("the values end without the separator of records".to_owned())
     } else {
         list.miscounted.first().map(|k| format!("value {} is a text that is not as long as stated", k + 1))

@@ -191,7 +191,7 @@ impl EntityTable {
     }
 
     /// The part of an edge's curve between its vertices, which may be shorter than the curve.
-    fn between(&self, edge: &EdgeData, curve: &Curve) -> Curve {
+    fn between(&mut self, edge: &EdgeData, curve: &Curve) -> Curve {
         let vertex = |(list, index): (Pointer, usize)| match self.data(list) {
             Ok(Data::Vertices(points)) => index.checked_sub(1).and_then(|k| points.get(k)).map(|p| *p * self.scale),
             _ => None,
@@ -199,6 +199,12 @@ impl EntityTable {
         let (Some(start), Some(end)) = (vertex(edge.start), vertex(edge.end)) else { return curve.clone() };
         let room = NEAR_MISS * self.slack();
         let near = |a: DVec3, b: DVec3| a.distance(b) <= room;
+        let off = [start, end].map(|p| p.distance(curve.start()).min(p.distance(curve.end())));
+        let off =
+            if off.iter().all(|off| *off <= self.slack()) { 0.0 } else { closest(curve, start).distance.max(closest(curve, end).distance) };
+        if off > self.slack() && self.vertex_off.is_none_or(|(worst, _)| off > worst) {
+            self.vertex_off = Some((off, edge.curve));
+        }
         if near(curve.start(), start) && near(curve.end(), end) {
             return curve.clone();
         }

@@ -118,12 +118,14 @@ pub struct ParameterReader<'a> {
     tokens: &'a [ParameterSpan],
     at: usize,
     ended: bool,
+    /// Values follow that are no lists of groups and properties.
+    uncounted: bool,
 }
 
 impl<'a> ParameterReader<'a> {
     /// Over the values of a list; of one that was ended properly values may be left out at the end.
     pub fn new(text: &'a [u8], list: &'a Tokens) -> Self {
-        Self { text, tokens: &list.tokens, at: 0, ended: list.ended }
+        Self { text, tokens: &list.tokens, at: 0, ended: list.ended, uncounted: false }
     }
 
     /// Values not read yet.
@@ -225,10 +227,16 @@ impl<'a> ParameterReader<'a> {
         }
     }
 
+    /// Whether what follows the values is no lists of groups and properties, once those were read: more values than counts say.
+    pub fn is_uncounted(&self) -> bool {
+        self.uncounted || self.tokens[self.at..].iter().any(|token| *token != ParameterSpan::Empty)
+    }
+
     /// The groups and properties that may follow the values of any entity: two counted lists of pointers.
     pub fn attached(&mut self) -> (Vec<u32>, Vec<u32>) {
         let mut list = || {
-            let n = if self.left() > 0 { self.count("count of pointers").unwrap_or(0) } else { 0 };
+            let n = if self.left() > 0 { self.count("count of pointers").unwrap_or(usize::MAX) } else { 0 };
+            self.uncounted |= n > self.left();
             self.pointers(n, "pointers").unwrap_or_default()
         };
         (list(), list())

@@ -355,6 +355,10 @@ impl IgesPartBuilder {
 
     /// Says once by how much borders are off.
     fn gaps(&mut self) {
+        if let Some((off, d)) = self.table.vertex_off {
+            let off = self.table.length(off);
+            self.table.warn(d, format!("a vertex of its edge is {off} off it, the most in the file; the curves are used"));
+        }
         let slack = self.table.slack();
         let table = &self.table;
         if let Some((worst, n)) = self.part.list_repairs(slack, |item| table.label(item.id as Pointer)) {
