@@ -90,7 +90,7 @@ impl Model {
         let least = self.own_gap(members.iter().copied()).max(tolerance.point);
         if request.snap.is_none() && least < most {
             let sewn = self.sewn_over(members, least, network, tolerance);
-            let joins = |n: usize| matches!(n, 0 | 2) || request.touches && n % 2 == 0;
+            let joins = |n: usize| matches!(n, 0 | 2) || request.touches && n.is_multiple_of(2);
             if sewn.usages.iter().all(|users| joins(users.len())) {
                 return sewn;
             }

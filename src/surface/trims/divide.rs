@@ -52,7 +52,7 @@ const VERTICES: Vertices = Vertices {
 /// Divides a surface by curves on it, together with its own border, and keeps the part with a point.
 ///
 /// Curves may run on beyond each other and beyond the border; what hangs loose cuts nothing. A point on a border, or hardly off the surface,
-/// stands for the only part within [`KEEP_SHARE`] of the surface's size. E613 when a curve is not on the surface, E659 when one of them cuts
+/// stands for the only part within a thousandth of the surface's size. E613 when a curve is not on the surface, E659 when one of them cuts
 /// nothing off, E660 when there is no such part, or several.
 pub fn divide(base: &Surface, cutters: &[Chain], keep: DVec3, origin: Origin, tolerance: &Tolerance) -> Result<Surface> {
     let base = &plane::unmapped(base, tolerance)?;
