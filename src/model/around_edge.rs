@@ -12,7 +12,7 @@ use crate::surface::Nearest;
 const PLACES: [f64; 3] = [0.5, 0.27, 0.81];
 
 /// Radians between two faces at an edge from which on they leave it in different directions.
-const APART: f64 = 1e-3;
+const APART: f64 = 1.0 / 1024.0;
 
 /// Pairs of faces that use a segment, with the segment of each.
 pub(super) struct Paired {

@@ -3,18 +3,17 @@
 use glam::DVec3;
 
 use crate::base::quadrature::kronrod;
+use crate::base::tolerance::NEAREST;
 use crate::network::Chain;
 use crate::surface::data::breaks::chain_breaks;
 
 /// Places in each span between knots at which the curvature is looked at.
 const PLACES: usize = 24;
-/// Curvature less than this share of the largest one is none, and so is a turn by less than this over the whole curve, radians.
-const NOTHING: f64 = 1e-4;
-const NO_TURN: f64 = 1e-7;
+/// Curvature less than this share of the largest one is none.
+const NOTHING: f64 = 1.0 / 8192.0;
 /// Halvings that narrow an inflection down.
 const ROUNDS: usize = 48;
-/// Relative accuracy of an integral, and how often a span is halved for it.
-const ACCURACY: f64 = 1e-9;
+/// How often a span is halved for an integral.
 const DEPTH: usize = 12;
 
 /// The vector from a place towards the centre of curvature, as long as the curvature, 1/model unit.
@@ -54,7 +53,8 @@ pub fn inflections(chain: &Chain) -> Vec<f64> {
 pub fn inflections_above(chain: &Chain, share: f64) -> Vec<f64> {
     let samples = sampled(chain);
     let most = largest(&samples);
-    if most * chain.length() <= NO_TURN {
+    // A curve that is a point, or straight but for rounding, bends nowhere.
+    if most * chain.length() <= NEAREST || chain.length() <= NEAREST * chain.start().abs().max_element() {
         return Vec::new();
     }
     let bent: Vec<(f64, DVec3)> = samples.into_iter().filter(|(_, k)| k.length() > share * most).collect();
@@ -81,7 +81,7 @@ pub fn inflections_above(chain: &Chain, share: f64) -> Vec<f64> {
 pub fn bending(chain: &Chain) -> f64 {
     fn part(chain: &Chain, from: f64, to: f64, left: usize) -> f64 {
         let panel = kronrod(from, to, |f| curvature(chain, f).length_squared());
-        if left == 0 || panel.error <= ACCURACY * panel.integral {
+        if left == 0 || panel.error <= NEAREST * panel.integral {
             return panel.integral;
         }
         let middle = 0.5 * (from + to);

@@ -25,7 +25,7 @@ use crate::surface::shapes::sweep::Path;
 /// Nearer than so many tolerances to a plane that only touches, a section is left to the search.
 const TOUCHING: f64 = 16.0;
 /// Sine of the least angle between a plane and the lines of a cone that it cuts in an ellipse.
-const LEAST_SINE: f64 = 1e-3;
+const LEAST_SINE: f64 = 1.0 / 1024.0;
 
 /// A face of revolution whose plane sections are ellipses.
 struct Revolved {

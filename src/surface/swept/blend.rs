@@ -5,8 +5,8 @@ use glam::{DVec3, DVec4};
 use crate::base::solve;
 use crate::base::tolerance::{NEAREST, Tolerance};
 use crate::geometry::shapes::nurbs::{projected, weighted};
+use crate::surface::swept::course::{Course, end_slopes};
 use crate::surface::swept::deform::Pieces;
-use crate::surface::swept::displacement::{Course, end_slopes};
 
 /// A given section as it is at a station.
 pub(super) struct Copy<'a> {

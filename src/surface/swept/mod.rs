@@ -2,6 +2,7 @@
 
 pub mod along;
 mod blend;
+mod course;
 pub mod deform;
 mod displacement;
 pub mod extrude;

@@ -10,8 +10,9 @@ use crate::network::Chain;
 use crate::surface::data::bends::inflections_above;
 use crate::surface::faults::{SectionFault, SweepFault};
 use crate::surface::swept::blend::{self, Copy};
+use crate::surface::swept::course::Course;
 use crate::surface::swept::deform::{self, Deformation, Pieces};
-use crate::surface::swept::displacement::{Course, Displacement};
+use crate::surface::swept::displacement::Displacement;
 use crate::surface::swept::laws::{Law, Main, samples};
 use crate::surface::swept::marks::Marks;
 use crate::surface::swept::sections::Section;
@@ -52,7 +53,7 @@ impl Given<'_> {
             let (chain, breaks) = deform::curve(&found, self.origin);
             made.ribs.push(Rib { w, on_guides, chain, breaks });
         }
-        made.notes.extend(ripples(&made.ribs, self.sections, self.origin));
+        made.notes.extend(ripples(&made.ribs, self.sections, self.origin, self.tolerance));
         if self.law == Law::Normal {
             made.notes.extend(crossing(&made.ribs, main.chain, self.origin));
         }
@@ -145,14 +146,17 @@ const LEAST_SCALE: f64 = 0.05;
 const SEEN: f64 = 1.0 / 64.0;
 
 /// W645 where a station has twice as many bends as the sections around it.
-fn ripples(ribs: &[Rib], sections: &[Section], origin: Origin) -> Option<Fault> {
+fn ripples(ribs: &[Rib], sections: &[Section], origin: Origin, tolerance: &Tolerance) -> Option<Fault> {
+    /// A station no longer than so many tolerances is a point.
+    const POINT: f64 = 64.0;
     let given = |rib: &Rib| sections.iter().any(|s| s.on_guides[0] == rib.w);
     if ribs.iter().all(given) {
         return None;
     }
     let all: Vec<Vec<f64>> = ribs.iter().map(|rib| inflections_above(&rib.chain, SEEN)).collect();
     let mut worst: Option<(usize, usize, usize)> = None;
-    for (k, own) in all.iter().enumerate().filter(|(k, _)| !given(&ribs[*k])) {
+    let told = |k: usize| !given(&ribs[k]) && ribs[k].chain.length() > POINT * tolerance.point;
+    for (k, own) in all.iter().enumerate().filter(|(k, _)| told(*k)) {
         let around = [(0..k).rev().find(|j| given(&ribs[*j])), (k..ribs.len()).find(|j| given(&ribs[*j]))];
         let most = around.into_iter().flatten().map(|j| all[j].len()).max().unwrap_or_default();
         // A curve with n inflections has n + 1 bends.

@@ -82,7 +82,7 @@ pub fn divide(base: &Surface, cutters: &[Chain], keep: DVec3, origin: Origin, to
 }
 
 /// Share of the size of a surface within which a point beside a part stands for that part.
-const KEEP_SHARE: f64 = 1e-3;
+const KEEP_SHARE: f64 = 1.0 / 1000.0;
 
 /// All parts into which curves on a surface divide it, together with its own border; fails as [`divide`] does.
 pub fn split(whole: &Surface, cutters: &[Chain], origin: Origin, tolerance: &Tolerance) -> Result<Vec<Surface>> {

@@ -152,7 +152,7 @@ fn little(of: Origin, path: &str, (came, total): (usize, usize), unread: &[Malfo
     let what = if came == 0 { "nothing".to_owned() } else { format!("only {came} of {total} faces") };
     let report = Report::new(format!("{what} of \"{path}\" could be read")).at(of, "imported here");
     let report = unread.iter().take(FACES_LISTED).fold(report, |r, at| r.note(format!("line {}: {}", at.line, at.what)));
-    report.help("`(incomplete: true)` behind the path takes what there is")
+    report.help("`incomplete: true` in brackets behind the path takes what there is")
 }
 
 /// W814: which bodies stand in the place of which.

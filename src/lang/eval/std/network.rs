@@ -213,7 +213,9 @@ fields! {
     };
     /// The points where a curve begins to bend the other way; corners are none.
     fn inflections(of: Chain) -> Vec<Point> = |_, of| Ok(bends::inflections(&of).into_iter().map(|f| Point(of.point(f))).collect());
-    /// How much a curve bends: the integral of its squared curvature along it, without its corners, 1/length.
+    /// The integral of the squared curvature of a curve along it, 1/length.
+    ///
+    /// It tells how much the curve bends; corners are left out.
     fn bending(of: Chain) -> Quantity = |_, of| Ok(Quantity::new(bends::bending(&of), Dim::CURVATURE));
     /// The links of the network that a curve runs over, in its direction.
     fn links(of: Chain) -> Vec<LinkOf> = |cx, of| {

@@ -9,6 +9,7 @@ use crate::lang::values::conversions::{Angle, Axis, Length, Point};
 use crate::lang::values::value::Value;
 use crate::network::Chain;
 use crate::surface::Surface;
+use crate::surface::analysis::fairness::StationFairness;
 use crate::surface::intersect::line_crossing::any_crossing;
 use crate::surface::swept::along::{AlongSettings, along as carried_along};
 use crate::surface::swept::laws::Law;
@@ -143,8 +144,9 @@ builtins! {
         reported(cx, surface, &notes)
     };
 
-    /// How fair the curves are that a surface is made through: the stations of a sweep, the sections of a skin, the curves along v of a net.
+    /// How fair the curves are that a surface is made through.
     ///
+    /// They are the stations of a sweep, the sections of a skin, the curves along v of a net.
     /// A record of each, in their order: `at`, its u, or v of a section of a skin; `given`, whether it is one of the curves that were given;
     /// `inflections`, how often it begins to bend the other way, corners left out; `radius`, the least one of its bends, `none` where it is straight;
     /// `bending`, ∫κ² along it times its length, beside the larger of those of the given curves around it. A station between two sections
@@ -162,13 +164,19 @@ builtins! {
     fn fairness(
         /// The surface.
         s: Surface,
-    ) -> Vec<Value> = |cx, s| Ok(s.fairness().into_iter().map(|station| cx.record([
-        ("at", Value::number(station.at)),
-        ("given", Value::Bool(station.given)),
-        ("inflections", Value::number(station.inflections as f64)),
-        ("radius", if station.radius.is_finite() { Value::length(station.radius) } else { Value::None }),
-        ("bending", Value::number(station.bending)),
-    ])).collect());
+    ) -> Vec<Value> = |cx, s| {
+        let row = |station: StationFairness| {
+            let radius = if station.radius.is_finite() { Value::length(station.radius) } else { Value::None };
+            cx.record([
+                ("at", Value::number(station.at)),
+                ("given", Value::Bool(station.given)),
+                ("inflections", Value::number(station.inflections as f64)),
+                ("radius", radius),
+                ("bending", Value::number(station.bending)),
+            ])
+        };
+        Ok(s.fairness().into_iter().map(row).collect())
+    };
 }
 
 crate::fields! {
