@@ -151,6 +151,13 @@ impl IgesPartBuilder {
             }
         };
         if self.part.tree.len() >= limits::PART_INSTANCES {
+            // Told once, and what is not placed is missing.
+            if !std::mem::replace(&mut self.full, true) {
+                self.unusable(
+                    d,
+                    format!("the file places more than {} instances; this one and those after it are not", limits::PART_INSTANCES),
+                );
+            }
             return;
         }
         let around = self.at.unwrap_or_else(|| Motion::translation(DVec3::ZERO));
@@ -167,8 +174,10 @@ impl IgesPartBuilder {
             job::poll();
             let at = Some(motion.then(&around));
             if self.at != at {
-                // The same solid may stand in an assembly at several places.
+                // The same solid or instance may stand in an assembly at several places.
                 std::mem::take(&mut self.made).into_values().for_each(|member| group.put(member));
+                let inner = std::mem::take(&mut self.instances).into_values();
+                inner.flat_map(|inner| inner.members()).for_each(|member| group.put(member));
             }
             self.at = at;
             self.place(member, depth + 1);

@@ -61,6 +61,7 @@ impl OpenedIges {
             faces: BTreeMap::new(),
             instances: BTreeMap::new(),
             definitions: BTreeMap::new(),
+            full: false,
         }
         .run()
     }
@@ -84,6 +85,8 @@ pub(super) struct IgesPartBuilder {
     pub(super) instances: BTreeMap<Pointer, Group>,
     /// The first node of each definition.
     pub(super) definitions: BTreeMap<Pointer, usize>,
+    /// Whether there are more instances than a part may have.
+    pub(super) full: bool,
 }
 
 impl IgesPartBuilder {

@@ -149,7 +149,11 @@ fn unusable(of: Origin, path: &str, total: usize, faces: &[Malformed], share: Op
 
 /// E815: how little of a file was read, and why.
 fn little(of: Origin, path: &str, (came, total): (usize, usize), unread: &[Malformed]) -> Report {
-    let what = if came == 0 { "nothing".to_owned() } else { format!("only {came} of {total} faces") };
+    let what = match (came, total) {
+        (0, 0) => "nothing".to_owned(),
+        (0, _) => "no face".to_owned(),
+        _ => format!("only {came} of {total} faces"),
+    };
     let report = Report::new(format!("{what} of \"{path}\" could be read")).at(of, "imported here");
     let report = unread.iter().take(FACES_LISTED).fold(report, |r, at| r.note(format!("line {}: {}", at.line, at.what)));
     report.help("`incomplete: true` in brackets behind the path takes what there is")
