@@ -1,7 +1,7 @@
 //! How fair the curves are that a surface is made through.
 
 use crate::surface::core::surface::Surface;
-use crate::surface::data::bends::{bending, inflections, least_radius};
+use crate::surface::data::bends::{bending, inflections, largest_curvature};
 
 /// How fair one of the curves is that a surface is made through.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,7 +14,8 @@ pub struct StationFairness {
     pub inflections: usize,
     /// The least radius of its bends, model units; infinite where it is straight.
     pub radius: f64,
-    /// ∫κ² ds times its length, over the larger of those of the given curves on either side; 1 for a given one.
+    /// ∫κ² ds times its length, over the larger of those of the given curves on either side; 1 for a given one, infinite
+    /// where it bends and they do not.
     pub bending: f64,
 }
 
@@ -29,12 +30,13 @@ impl Surface {
         let row = |k: usize| {
             let around = [(0..=k).rev().find(|k| given[*k]), (k..given.len()).find(|k| given[*k])];
             let most = around.into_iter().flatten().map(|k| bends[k]).fold(0.0, f64::max);
-            let ratio = if most > 0.0 { bends[k] / most } else { f64::from(u8::from(bends[k] > 0.0)) };
+            // Straight ones are as fair as straight ones.
+            let ratio = if bends[k] == most { 1.0 } else { bends[k] / most };
             StationFairness {
                 at: places.get(k).map_or(0.0, |place| place.at),
                 given: given[k],
                 inflections: inflections(&stations[k]).len(),
-                radius: least_radius(&stations[k]),
+                radius: largest_curvature(&stations[k]).recip(),
                 bending: if given[k] { 1.0 } else { ratio },
             }
         };

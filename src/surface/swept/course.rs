@@ -44,7 +44,7 @@ fn bends_on(before: Option<(DVec3, DVec3)>, after: Option<(DVec3, DVec3)>) -> bo
 }
 
 /// Shares of the chord at which points lie that are all on it; `None` for a piece that bends.
-pub(super) fn straight_shares(points: &[DVec3]) -> Option<Vec<f64>> {
+fn straight_shares(points: &[DVec3]) -> Option<Vec<f64>> {
     let (first, last) = (points[0], points[points.len() - 1]);
     let way = last - first;
     let share = |p: &DVec3| if way == DVec3::ZERO { 0.0 } else { (*p - first).dot(way) / way.length_squared() };
@@ -85,17 +85,20 @@ impl Course {
         Self { spans, smooth, fair, return_ratio, straight }
     }
 
-    /// Which pieces stay straight: those of straight lines that no anchor divides.
-    pub fn stiff(&self, anchors: &[usize]) -> Vec<bool> {
+    /// Which pieces stay straight: those of straight lines that no anchor divides, nor ends where the section goes on smoothly beyond all.
+    pub fn stiff(&self, anchors: &[usize], closed: bool) -> Vec<bool> {
         let n = self.spans.len();
         let mut stiff = self.straight.clone();
         let goes_on = |k: usize| self.straight[k] && self.straight[(k + n - 1) % n] && self.smooth[k];
+        let outer = |k: usize| {
+            !closed && k > 0 && k < n && self.smooth[k] && (anchors.iter().min() == Some(&k) || anchors.iter().max() == Some(&k))
+        };
         let mut from = 0;
         while from < n {
             let to = (from + 1..n).find(|k| !goes_on(*k)).unwrap_or(n);
             // A closed section begins at an anchor.
             let over_start = (from == 0 || to == n) && goes_on(0);
-            if over_start || anchors.iter().any(|a| from < *a && *a < to) {
+            if over_start || outer(from) || outer(to) || anchors.iter().any(|a| from < *a && *a < to) {
                 stiff[from..to].fill(false);
             }
             from = to;

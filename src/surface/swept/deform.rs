@@ -58,14 +58,14 @@ impl Deformation {
         self.centres.1 + (moved - self.centres.0) * self.scale
     }
 
-    /// All pieces; `along` says how a displacement of the anchors goes on along the section.
-    pub(super) fn pieces(&self, pieces: &Pieces, along: &Displacement) -> Pieces {
-        let of = |(k, piece): (usize, &Vec<DVec4>)| {
-            let mut made: Vec<DVec4> = piece.iter().map(|q| weighted(self.carried(projected(*q)), q.w)).collect();
-            along.apply(k, &mut made, &self.rest, piece);
-            made
-        };
-        pieces.iter().enumerate().map(of).collect()
+    /// All pieces; `along` says how a displacement of the anchors goes on along the section, where there are several.
+    pub(super) fn pieces(&self, pieces: &Pieces, along: Option<&Displacement>) -> Pieces {
+        let carried = |piece: &Vec<DVec4>| piece.iter().map(|q| weighted(self.carried(projected(*q)), q.w)).collect();
+        let mut made: Pieces = pieces.iter().map(carried).collect();
+        if let Some(along) = along {
+            along.field(&self.rest).apply(&mut made, pieces);
+        }
+        made
     }
 }
 

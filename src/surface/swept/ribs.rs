@@ -6,8 +6,9 @@ use crate::base::fault::{Fault, Result};
 use crate::base::job;
 use crate::base::origin::Origin;
 use crate::base::tolerance::Tolerance;
+use crate::geometry::data::fault::CurveFault;
 use crate::network::Chain;
-use crate::surface::data::bends::inflections_above;
+use crate::surface::data::bends::{inflections_above, largest_curvature};
 use crate::surface::faults::{SectionFault, SweepFault};
 use crate::surface::swept::blend::{self, Copy};
 use crate::surface::swept::course::Course;
@@ -35,7 +36,8 @@ pub(super) struct Given<'a> {
 struct Cut {
     pieces: Vec<Pieces>,
     courses: Vec<Course>,
-    along: Vec<Displacement>,
+    /// How displacements go on along each; none where one guide moves all of it alike.
+    along: Vec<Option<Displacement>>,
     turns: Vec<[Vec<DMat3>; 2]>,
 }
 
@@ -72,8 +74,17 @@ impl Given<'_> {
         let closed = made.closed.1;
         let courses: Vec<Course> =
             pieces.iter().zip(&self.marks.rows).map(|(section, row)| Course::new(section, row, closed, self.tolerance)).collect();
-        let along = |(section, course)| Displacement::new(section, course, &self.marks.places, closed);
-        let along = pieces.iter().zip(&courses).map(along).collect();
+        let mut along = Vec::with_capacity(pieces.len());
+        for ((section, course), given) in pieces.iter().zip(&courses).zip(self.sections) {
+            let several = self.marks.places.len() > 1;
+            let found = several.then(|| Displacement::new(section, course, &self.marks.places, closed));
+            let lost = || CurveFault::NotConverged {
+                of: given.chain.origin(),
+                what: "how the section gives way to its guides".to_owned(),
+                at: given.chain.start(),
+            };
+            along.push(found.map(|found| found.ok_or_else(|| Fault::from(lost()))).transpose()?);
+        }
         let divided = Divided { guides: &made.guides, sections: self.sections };
         let returns = made.closed.0 && self.sections.len() == 1;
         let turns = match self.law {
@@ -130,7 +141,7 @@ impl Given<'_> {
                 let fault = SectionFault::Scaled { section: section.chain.origin(), scale, at: station.at };
                 made.notes.push(fault.into());
             }
-            copies.push(Copy { w: given, pieces: deformation.pieces(&cut.pieces[k], &cut.along[k]), course: &cut.courses[k] });
+            copies.push(Copy { w: given, pieces: deformation.pieces(&cut.pieces[k], cut.along[k].as_ref()), course: &cut.courses[k] });
         }
         match before {
             Some(before) => blend::blended(&copies, before, w, made.closed.1, self.tolerance),
@@ -142,32 +153,29 @@ impl Given<'_> {
 /// Least and one over the largest scale of a section that is no warning.
 const LEAST_SCALE: f64 = 0.05;
 
-/// Bends of a station count where their curvature is more than this share of its largest one.
+/// Bends of a station count where their curvature is more than this share of the largest one of the sections around it.
 const SEEN: f64 = 1.0 / 64.0;
 
 /// W645 where a station has twice as many bends as the sections around it.
 fn ripples(ribs: &[Rib], sections: &[Section], origin: Origin, tolerance: &Tolerance) -> Option<Fault> {
     /// A station no longer than so many tolerances is a point.
     const POINT: f64 = 64.0;
-    let given = |rib: &Rib| sections.iter().any(|s| s.on_guides[0] == rib.w);
-    if ribs.iter().all(given) {
-        return None;
-    }
-    let all: Vec<Vec<f64>> = ribs.iter().map(|rib| inflections_above(&rib.chain, SEEN)).collect();
-    let mut worst: Option<(usize, usize, usize)> = None;
-    let told = |k: usize| !given(&ribs[k]) && ribs[k].chain.length() > POINT * tolerance.point;
-    for (k, own) in all.iter().enumerate().filter(|(k, _)| told(*k)) {
-        let around = [(0..k).rev().find(|j| given(&ribs[*j])), (k..ribs.len()).find(|j| given(&ribs[*j]))];
-        let most = around.into_iter().flatten().map(|j| all[j].len()).max().unwrap_or_default();
+    let given: Vec<bool> = ribs.iter().map(|rib| sections.iter().any(|s| s.on_guides[0] == rib.w)).collect();
+    let sharpest: Vec<f64> = ribs.iter().map(|rib| largest_curvature(&rib.chain)).collect();
+    let mut worst: Option<(usize, usize, usize, DVec3)> = None;
+    for (k, rib) in ribs.iter().enumerate().filter(|(k, rib)| !given[*k] && rib.chain.length() > POINT * tolerance.point) {
+        let around = [(0..k).rev().find(|j| given[*j]), (k..ribs.len()).find(|j| given[*j])];
+        let around = || around.into_iter().flatten();
+        let largest = around().map(|j| sharpest[j]).fold(0.0, f64::max);
+        let least = SEEN * if largest > 0.0 { largest } else { sharpest[k] };
+        let own = inflections_above(&rib.chain, least);
+        let most = around().map(|j| inflections_above(&ribs[j].chain, least).len()).max().unwrap_or_default();
         // A curve with n inflections has n + 1 bends.
         if own.len() + 1 > 2 * (most + 1) && worst.is_none_or(|(more, ..)| own.len() - most > more) {
-            worst = Some((own.len() - most, k, most));
+            worst = Some((own.len() - most, own.len(), most, rib.chain.point(own[0])));
         }
     }
-    worst.map(|(_, k, given)| {
-        let at = ribs[k].chain.point(all[k][0]);
-        SectionFault::Ripples { surface: origin, inflections: all[k].len(), given, at }.into()
-    })
+    worst.map(|(_, inflections, given, at)| SectionFault::Ripples { surface: origin, inflections, given, at }.into())
 }
 
 /// W639 where a section reaches beyond the centre of the main guide's bend.

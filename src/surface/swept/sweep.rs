@@ -227,7 +227,8 @@ fn contains(surface: &Surface, net: &SweepNet, tolerance: &Tolerance) -> Result<
     /// Where guides lie close together beside a wide gap, splines across them take what they miss the sections by so many times.
     const AMPLIFIED: f64 = 64.0;
     let size = surface.hull().diagonal();
-    let anchors = || net.order.iter().zip(&net.places).flat_map(|(j, place)| net.ribs.iter().map(move |rib| (*j, *place, rib)));
+    let given = || net.ribs.iter().filter(|rib| rib.chain.origin() != surface.origin());
+    let anchors = || net.order.iter().zip(&net.places).flat_map(|(j, place)| given().map(move |rib| (*j, *place, rib)));
     let miss =
         |(j, place, rib): (usize, usize, &Rib)| net.guides[j].chain.point(rib.on_guides[j]).distance(rib.chain.point(rib.breaks[place]));
     let allowed = NEAREST * size + tolerance.point + AMPLIFIED * anchors().map(miss).fold(0.0, f64::max);

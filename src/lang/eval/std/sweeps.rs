@@ -149,7 +149,7 @@ builtins! {
     /// They are the stations of a sweep, the sections of a skin, the curves along v of a net.
     /// A record of each, in their order: `at`, its u, or v of a section of a skin; `given`, whether it is one of the curves that were given;
     /// `inflections`, how often it begins to bend the other way, corners left out; `radius`, the least one of its bends, `none` where it is straight;
-    /// `bending`, ∫κ² along it times its length, beside the larger of those of the given curves around it. A station between two sections
+    /// `bending`, ∫κ² along it times its length, beside the larger of those of the given curves around it, `none` where these are straight and it is not. A station between two sections
     /// that is as fair as these has no more inflections, and a bending near 1.
     /// ```loft
     /// curve foot = spline([(0, -60, 0), (0, -30, 18), (0, 0, 24), (0, 30, 18), (0, 60, 0)])
@@ -172,7 +172,7 @@ builtins! {
                 ("given", Value::Bool(station.given)),
                 ("inflections", Value::number(station.inflections as f64)),
                 ("radius", radius),
-                ("bending", Value::number(station.bending)),
+                ("bending", if station.bending.is_finite() { Value::number(station.bending) } else { Value::None }),
             ])
         };
         Ok(s.fairness().into_iter().map(row).collect())
@@ -198,11 +198,11 @@ crate::fields! {
 
     /// How much each of its stations bends, beside the given curves around it.
     ///
-    /// ∫κ² along it times its length, over the larger one of those of the given curve before it and the one after it; 1 for a given curve. A list of no numbers where it was not made through curves.
+    /// ∫κ² along it times its length, over the larger one of those of the given curve before it and the one after it; 1 for a given curve, `none` where those are straight and it is not. A list of no numbers where it was not made through curves.
     fn bending(
         /// The surface.
         s: Surface,
-    ) -> Vec<f64> = |_cx, s| Ok(s.fairness().iter().map(|station| station.bending).collect());
+    ) -> Vec<Option<f64>> = |_cx, s| Ok(s.fairness().iter().map(|station| Some(station.bending).filter(|b| b.is_finite())).collect());
 
     /// Counts of control points of a B-spline surface along u and v.
     ///
