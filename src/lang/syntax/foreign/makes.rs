@@ -80,6 +80,7 @@ const OTHERS: &[&str] = &[
     "even_points",
     "exp",
     "fair",
+    "fairness",
     "fit",
     "flatten",
     "floor",
