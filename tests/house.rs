@@ -104,7 +104,7 @@ const CEILINGS: &[(&str, usize)] = &[
     ("base", 5_000),
     ("geometry", 6_550),
     ("network", 5_150),
-    ("surface", 32_300),
+    ("surface", 32_500),
     ("model", 7_400),
     ("mesh", 34_900),
     ("hydrostatics", 2_300),
