@@ -340,14 +340,22 @@ pub fn look(text: &str, outcome: &Outcome, tally: &mut [usize; 5]) -> Vec<String
             tally[2] += seen.borders(&near, outcome.tolerance.unwrap_or_default(), &mut found);
         }
         tally[3] += usize::from(seen.chord(&near, row.chord_error, &mut found));
-        let open = seen.edges().values().any(|uses| uses.len() != 2);
+        // A skin may touch itself along an edge, which then has two uses each way; what has an element twice is no skin.
+        let edges = seen.edges();
+        let uneven = edges.values().any(|uses| 2 * uses.iter().filter(|u| u.0).count() != uses.len());
+        let pinched = edges.values().any(|uses| uses.len() > 2);
+        let triangles = mesh.triangles.iter().map(|t| t.to_vec());
+        let mut elements: Vec<Vec<u32>> = triangles.chain(mesh.quads.iter().map(|q| q.to_vec())).collect();
+        elements.iter_mut().for_each(|element| element.sort_unstable());
+        elements.sort_unstable();
+        let open = uneven || pinched && elements.windows(2).any(|w| w[0] == w[1]);
         if mesh.is_watertight() == open || row.watertight != Some(!open) {
             found.push("`watertight` is not what its edges say".to_owned());
         }
-        // A closed skin has an even Euler number.
+        // A closed skin that does not touch itself has an even Euler number.
         let corners: BTreeSet<u32> = seen.edges().keys().flat_map(|(a, b)| [*a, *b]).collect();
         let euler = corners.len() as i64 - seen.edges().len() as i64 + (mesh.triangles.len() + mesh.quads.len()) as i64;
-        if !open && euler % 2 != 0 {
+        if !open && !pinched && euler % 2 != 0 {
             found.push(format!("a closed skin with the Euler number {euler}"));
         }
         if let Some(shell) = shell {
