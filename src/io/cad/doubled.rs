@@ -7,7 +7,7 @@ use crate::io::cad::part::{Group, Part};
 use crate::model::measure;
 use crate::surface::Surface;
 
-/// What a body is compared by before its faces are.
+/// The faces of a body and the box round them. Boxes are compared first, then face by face.
 struct Outline<'p> {
     body: &'p Group,
     faces: Vec<&'p Surface>,

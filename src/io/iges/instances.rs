@@ -16,9 +16,9 @@ use crate::io::iges::entity_data::{Data, Pointer};
 use crate::io::iges::entity_table::{EntityTable, NESTED};
 use crate::io::iges::part::IgesPartBuilder;
 
-/// What an instance places, each with the motion from its own frame to that of what the instance stands in.
+/// The members that an instance places. Motions lead from the frame of a member to the frame that the instance itself stands in.
 pub struct Placed {
-    /// What is placed, as one thing: a definition, a solid or an assembly.
+    /// The definition, solid or assembly that is placed.
     pub of: Pointer,
     /// The name that the definition has; may be empty.
     pub name: String,

@@ -17,7 +17,7 @@ pub(super) struct Copy<'a> {
 }
 
 /// The section at the fraction `w` of the main guide, between copies `before` and `before + 1` of some in ascending order: linear between
-/// two, and with more a cubic along the guide at each control point, monotone where these are and linear where they are.
+/// two, and with more a cubic along the guide at each control point, linear where these are; its slopes are limited by length, not by coordinate.
 pub(super) fn blended(copies: &[Copy], before: usize, w: f64, closed: bool, tolerance: &Tolerance) -> Pieces {
     let (a, b) = (&copies[before], &copies[before + 1]);
     let x = (w - a.w) / (b.w - a.w);

@@ -67,7 +67,7 @@ pub enum ContentFault {
         path: String,
         /// How many faces came in, of how many that the file has.
         faces: (usize, usize),
-        /// What could not be read, with the cause.
+        /// Entities that were not read, each with the cause.
         unread: Vec<Malformed>,
     },
     /// W814: bodies of a file that stand where the same one stands already.
@@ -159,7 +159,7 @@ fn little(of: Origin, path: &str, (came, total): (usize, usize), unread: &[Malfo
     report.help("`incomplete: true` in brackets behind the path takes what there is")
 }
 
-/// W814: which bodies stand in the place of which.
+/// W814, with the names of each pair of bodies in one place.
 fn doubled(of: Origin, path: &str, pairs: &[(String, String)]) -> Report {
     let count = if pairs.len() == 1 { "a body stands".to_owned() } else { format!("{} bodies stand", pairs.len()) };
     let report = Report::new(format!("{count} twice in the same place in \"{path}\"")).at(of, "imported here");
