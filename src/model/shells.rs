@@ -78,7 +78,7 @@ impl Model {
             origin: request.origin,
             surfaces: sides,
             near: *near,
-            closed: free.is_empty() && usages.iter().all(|u| u.len() <= 2 || request.touches && u.len() % 2 == 0),
+            closed: free.is_empty() && paired.as_ref().map_or(usages, |paired| &paired.usages).iter().all(|u| u.len() <= 2),
             free,
         })
     }
