@@ -14,6 +14,7 @@ use crate::surface::core::surface::{Parts, Surface};
 use crate::surface::data::breaks::merge_kinks;
 use crate::surface::data::kind::{Domain, SurfaceKind};
 use crate::surface::faults::{BorderFault, SurfaceFault};
+use crate::surface::rails::corners::spline_axis;
 use crate::surface::rails::rail::Rail;
 use crate::surface::rails::reparam::{Map, Reparam};
 use crate::surface::rails::side::{Border, Side};
@@ -164,7 +165,13 @@ pub(super) fn gridded(grid: &Grid, settings: &CoonsSettings, tolerance: &Toleran
     if let Some(p) = grid.poles.1 {
         rails_u.push(Rail::Point(p));
     }
-    let blend = Blend::new(BlendAxis::new(nodes_u, rules.0), BlendAxis::new(nodes_v, rules.1), rails_v, rails_u);
+    let axis = |nodes: Vec<f64>, rails: &[Rail], closed: bool, rule: Rule| match settings.method {
+        BlendMethod::Gordon if rule != Rule::Linear => spline_axis(nodes, rails, closed, tolerance),
+        _ => BlendAxis::new(nodes, rule),
+    };
+    let u = axis(nodes_u, &rails_u, flow.closed_u, rules.0);
+    let v = axis(nodes_v, &rails_v, flow.closed_v, rules.1);
+    let blend = Blend::new(u, v, rails_v, rails_u);
     let made = Made {
         origin: settings.origin,
         kind: settings.method.kind(),
@@ -206,7 +213,7 @@ pub(crate) fn finish(mut blend: Blend, made: Made, tolerance: &Tolerance, notes:
 /// Finds the kink lines of both directions and sets those of the rails; W614 for slivers.
 pub(crate) fn set_kinks(blend: &mut Blend, origin: Origin, tolerance: &Tolerance, notes: &mut Vec<Fault>) -> (Vec<f64>, Vec<f64>) {
     let mut lines = [Vec::new(), Vec::new()];
-    let creases = [blend.axes().0.creases().to_vec(), blend.axes().1.creases().to_vec()];
+    let creases = [blend.axes().0.creases(), blend.axes().1.creases()];
     let (along_u, along_v) = blend.rails_mut();
     for (direction, (rails, lines)) in [along_u, along_v].into_iter().zip(&mut lines).enumerate() {
         // Where no curve runs along them lines are separated by their parameters alone.

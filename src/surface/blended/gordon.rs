@@ -7,7 +7,8 @@
 //! a and b are the cardinal functions of C2 cubic splines (`cardinal.rs`), the same in all three parts, so the surface
 //! contains every curve to rounding. It is evaluated as this sum: nothing is fitted. Given end slopes would change
 //! nothing but a and b: fields of end slopes that come from the net itself, interpolated by the same splines, cancel between
-//! the parts. So the ends are "not a knot", which reproduces cubics, and closed directions are periodic.
+//! the parts. So the ends are "not a knot", which reproduces cubics, and closed directions are periodic. Where all curves of a direction
+//! have a corner at a node the splines have one too (`rails/corners.rs`).
 //!
 //! The error for a net of lines of a surface F is (I − P_u)(I − P_v) F: zero where F is a cubic in one direction, and of
 //! the eighth order in the distances of the curves else.
@@ -23,6 +24,7 @@ use crate::surface::core::surface::Surface;
 use crate::surface::data::jet::unit_normal;
 use crate::surface::data::kind::SurfaceKind;
 use crate::surface::data::one_sided::OneSided;
+use crate::surface::rails::corners::spline_axis;
 use crate::surface::rails::rail::Rail;
 use crate::surface::shapes::blend::Blend;
 use crate::surface::shapes::rule::Rule;
@@ -70,13 +72,13 @@ pub(crate) fn blended(net: CurveNet, named: Named, straight: bool, tolerance: &T
             rails.push(first);
         }
     }
-    let rule = |closed: bool| match (straight, closed) {
-        (true, _) => Rule::Linear,
-        (_, true) => Rule::Periodic,
-        _ => Rule::Spline,
+    let axis = |nodes: Vec<f64>, rails: &[Rail], closed: bool| match straight {
+        true => BlendAxis::new(nodes, Rule::Linear),
+        false => spline_axis(nodes, rails, closed, tolerance),
     };
-    let u = BlendAxis::new(nodes.0, if along_v.is_empty() { Rule::Lagrange } else { rule(closed.0) });
-    let blend = Blend::new(u, BlendAxis::new(nodes.1, rule(closed.1)), along_v, along_u);
+    let u = if along_v.is_empty() { BlendAxis::new(nodes.0, Rule::Lagrange) } else { axis(nodes.0, &along_u, closed.0) };
+    let v = axis(nodes.1, &along_v, closed.1);
+    let blend = Blend::new(u, v, along_v, along_u);
     let mut notes = Vec::new();
     let made = Made { origin: named.origin, kind: named.kind, flow: named.flow, closed, chains: named.chains };
     (finish(blend, made, tolerance, &mut notes), notes)

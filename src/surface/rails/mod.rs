@@ -2,6 +2,7 @@
 //! and borders in (u, v).
 
 pub mod boundary;
+pub mod corners;
 pub mod line;
 pub mod mixed;
 pub mod rail;

@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::base::bbox::Box3;
 use crate::base::digest::{StableHash, StableHasher};
 use crate::base::range::Interval3;
-use crate::base::tolerance::{EPSILON, Tolerance};
+use crate::base::tolerance::{EPSILON, NUDGE, Tolerance};
 use crate::geometry::{Jet, Motion};
 use crate::network::Chain;
 use crate::surface::data::breaks::chain_breaks;
@@ -123,6 +123,18 @@ impl Rail {
             Self::Mixed(sum) => sum.length(),
             _ => 0.0,
         }
+    }
+
+    /// Whether it turns by less than a millionth of a radian between two parameters; never of a sum.
+    pub fn is_straight(&self, x0: f64, x1: f64) -> bool {
+        let Self::Chain { chain, map, .. } = self else { return matches!(self, Self::Point(_)) };
+        let (a, b) = (map.value(x0), map.value(x1));
+        let (low, high) = (a.min(b), a.max(b));
+        // What is beyond a knot at an end is not asked.
+        let inset = NUDGE * (high - low);
+        let bounds = chain.enclosure(low + inset, high - inset);
+        let turn = bounds.d2.reach() * (high - low) + bounds.jumps.length();
+        turn <= NUDGE * chain.length()
     }
 
     /// The chain; none of a pole or a sum.

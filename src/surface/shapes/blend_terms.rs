@@ -8,7 +8,8 @@ use crate::surface::shapes::weights::{BlendAxis, Weights};
 /// The lines of a spline's four active terms in a cell, each curve evaluated once.
 pub(super) fn active_lines(axis: &BlendAxis, cell: usize, curve: impl Fn(usize) -> Jet) -> [Jet; 4] {
     let mut lines = [Jet::default(); 4];
-    let (first, second) = (&axis.slopes()[cell], &axis.slopes()[cell + 1]);
+    let rows = axis.slopes_of(cell);
+    let (first, second) = (&axis.slopes()[rows.0], &axis.slopes()[rows.1]);
     for i in 0..axis.nodes.len() {
         if first[i] == 0.0 && second[i] == 0.0 && i != cell && i != cell + 1 {
             continue;

@@ -3,11 +3,15 @@
 //! A blend is a sum of functions of one parameter times *terms*. The first terms are the curves at the nodes; where the
 //! rule is a spline there follow as many slopes across the nodes, which are fixed sums of the curves. So few functions
 //! differ from 0 at any parameter, whatever the number of curves. Hermite blends have the same functions, and slopes of no curves.
+//!
+//! Where all curves of the other family have a corner at one node, splines have one too: they run on either side by themselves, with a
+//! slope of their own at the node. A smooth spline would swing on both sides of every corner. Where they are straight up to a node,
+//! splines leave it with the slope of the straight part, which is a spline by itself too.
 
 use crate::base::range::Interval;
 use crate::base::tolerance::EPSILON;
 use crate::surface::data::one_sided::OneSided;
-use crate::surface::shapes::cardinal;
+use crate::surface::shapes::cardinal::{self, Joins};
 use crate::surface::shapes::rule::Rule;
 
 /// Parameters of the curves across one direction, ascending from 0 to 1, and the rule between them.
@@ -17,11 +21,14 @@ pub struct BlendAxis {
     pub nodes: Vec<f64>,
     /// The rule.
     pub rule: Rule,
-    /// Of splines and Hermite blends: slopes at the nodes as sums of values at the nodes, in rows; zero of Hermite blends.
+    /// Places of nodes at which splines are less than C2, ascending: inner ones, and 0 where a closed direction is so at its seam.
+    joints: Vec<(usize, Joins)>,
+    /// Of splines and Hermite blends: slopes at the nodes as sums of values at the nodes, in rows; zero of Hermite blends. Joints have
+    /// two rows, that of the part before them first.
     slopes: Vec<Vec<f64>>,
 }
 
-crate::content!(BlendAxis { nodes, rule } but { slopes });
+crate::content!(BlendAxis { nodes, rule, joints } but { slopes });
 
 /// Terms that take part at one parameter, each with value, first and second derivative of its function.
 #[derive(Clone, Debug)]
@@ -78,16 +85,24 @@ impl Weights {
 impl BlendAxis {
     /// An axis with what its rule needs to be evaluated.
     pub fn new(nodes: Vec<f64>, rule: Rule) -> Self {
+        Self::with_joints(nodes, rule, Vec::new())
+    }
+
+    /// The same with joints at some nodes, by ascending places; only splines know them.
+    pub fn with_joints(nodes: Vec<f64>, rule: Rule, mut joints: Vec<(usize, Joins)>) -> Self {
+        if !matches!(rule, Rule::Spline | Rule::Periodic) {
+            joints.clear();
+        }
         let mut slopes = match rule {
             Rule::Hermite => vec![vec![0.0; nodes.len()]; nodes.len()],
-            _ if rule.has_slopes() => cardinal::slopes(&nodes, rule == Rule::Periodic),
+            _ if rule.has_slopes() => cardinal::slopes_between(&nodes, &joints, rule == Rule::Periodic),
             _ => Vec::new(),
         };
         for row in &mut slopes {
             let least = row.iter().fold(0.0, |most: f64, x| most.max(x.abs())) * UNFELT;
             row.iter_mut().filter(|x| x.abs() <= least).for_each(|x| *x = 0.0);
         }
-        Self { nodes, rule, slopes }
+        Self { nodes, rule, joints, slopes }
     }
 
     /// How many terms take part at any one parameter.
@@ -114,6 +129,25 @@ impl BlendAxis {
         &self.slopes
     }
 
+    /// Rows of the slopes at both ends of a cell.
+    pub fn slopes_of(&self, cell: usize) -> (usize, usize) {
+        let first = cell + self.joints.iter().filter(|joint| joint.0 > 0 && joint.0 <= cell).count();
+        (first, first + 1)
+    }
+
+    /// How many derivatives of the blending functions go on at an inner node.
+    pub fn smoothness(&self, node: usize) -> usize {
+        match self.rule {
+            Rule::Linear => 0,
+            Rule::Cubic | Rule::Hermite => 1,
+            Rule::Spline | Rule::Periodic | Rule::Lagrange => match self.joints.iter().find(|joint| joint.0 == node) {
+                Some((_, Joins::Corner)) => 0,
+                Some(_) => 1,
+                None => 2,
+            },
+        }
+    }
+
     /// Of the active blending values how many sum to 1 at every parameter: they come first; slopes follow.
     pub fn shares(&self) -> usize {
         if self.rule.has_slopes() { 2 } else { self.active() }
@@ -134,8 +168,8 @@ impl BlendAxis {
     }
 
     /// Inner parameters where the slope of the blending values jumps.
-    pub fn creases(&self) -> &[f64] {
-        if self.rule == Rule::Linear { &self.nodes[1..self.nodes.len() - 1] } else { &[] }
+    pub fn creases(&self) -> Vec<f64> {
+        (1..self.nodes.len() - 1).filter(|k| self.smoothness(*k) == 0).map(|k| self.nodes[k]).collect()
     }
 
     /// The cell that holds a parameter.
@@ -181,7 +215,7 @@ impl BlendAxis {
     fn hermite(&self, x: f64, k: usize) -> Weights {
         let h = self.nodes[k + 1] - self.nodes[k];
         let mut weights = Weights::room(k, 4);
-        weights.slopes = self.nodes.len();
+        weights.slopes = self.nodes.len() + self.slopes_of(k).0 - k;
         let (near, far, t, sign) = if x - self.nodes[k] <= self.nodes[k + 1] - x {
             (0, 1, (x - self.nodes[k]) / h, 1.0)
         } else {
@@ -262,7 +296,8 @@ impl BlendAxis {
     pub fn lebesgue(&self) -> f64 {
         if self.rule.has_slopes() {
             let sums: Vec<f64> = self.slopes.iter().map(|row| row.iter().map(|d| d.abs()).sum()).collect();
-            let cell = |k: usize| 1.0 + 4.0 / 27.0 * (self.nodes[k + 1] - self.nodes[k]) * (sums[k] + sums[k + 1]);
+            let both = |(a, b): (usize, usize)| sums[a] + sums[b];
+            let cell = |k: usize| 1.0 + 4.0 / 27.0 * (self.nodes[k + 1] - self.nodes[k]) * both(self.slopes_of(k));
             return (0..self.nodes.len() - 1).map(cell).fold(1.0, f64::max);
         }
         if self.rule != Rule::Lagrange {

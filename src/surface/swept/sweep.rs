@@ -181,8 +181,8 @@ fn missing(lines: &[(usize, Rail)], net: &SweepNet, last: usize) -> Vec<usize> {
     have.into_iter().filter(|k| !lines.iter().any(|l| l.0 == *k)).collect()
 }
 
-/// A line through the sections at one of their common breaks: a spline, in parts where the main guide has a corner; a pole
-/// where they all meet there.
+/// A line through the sections at one of their common breaks: a spline, in parts where the main guide has a corner or is straight; a
+/// pole where they all meet there.
 fn through(net: &SweepNet, place: usize, nodes: &[f64], origin: Origin, tolerance: &Tolerance) -> Result<Rail> {
     let points: Vec<DVec3> = net.ribs.iter().map(|r| r.chain.point(r.breaks[place])).collect();
     if points.iter().all(|p| tolerance.same_point(points[0], *p)) {
@@ -195,20 +195,20 @@ fn through(net: &SweepNet, place: usize, nodes: &[f64], origin: Origin, toleranc
         (fractions[0], fractions[n]) = (0.0, 1.0);
         return Ok(Rail::new(Chain::of_curve(&curve), Map::new(nodes.to_vec(), fractions, Reparam::Smooth, true)));
     }
-    let kinks = net.guides[0].chain.kinks(tolerance);
-    let corner = |k: &usize| kinks.iter().any(|f| (f - net.ribs[*k].w).abs() <= tolerance.parameter);
     let n = points.len() - 1;
-    let stops: Vec<usize> = std::iter::once(0).chain((1..n).filter(corner)).chain(std::iter::once(n)).collect();
     let (mut parts, mut lengths) = (Vec::new(), vec![0.0]);
-    for w in stops.windows(2) {
-        let run = &points[w[0]..=w[1]];
+    for part in parts_of(net, &points, tolerance) {
+        let run = &points[part.from..=part.to];
         let curve = match run {
-            [a, b] => line(*a, *b, origin)?,
-            _ => spline(run, &Spline { start: Ends::Natural, end: Ends::Natural, closed: false }, origin)?,
+            [a, .., b] if part.straight || run.len() == 2 => line(*a, *b, origin)?,
+            _ => spline(run, &Spline { start: part.ends.0, end: part.ends.1, closed: false }, origin)?,
         };
         let before = lengths[lengths.len() - 1];
-        let knots = if run.len() == 2 { vec![curve.domain().1] } else { curve.knots()[1..].to_vec() };
-        lengths.extend(knots.iter().map(|t| before + curve.length_at(*t)));
+        let knots: Vec<f64> = match part.straight || run.len() == 2 {
+            true => run[1..].iter().map(|p| p.distance(run[0])).collect(),
+            false => curve.knots()[1..].iter().map(|t| curve.length_at(*t)).collect(),
+        };
+        lengths.extend(knots.into_iter().map(|length| before + length));
         parts.push(Chain::of_curve(&curve));
     }
     let whole = lengths[n];
@@ -219,6 +219,56 @@ fn through(net: &SweepNet, place: usize, nodes: &[f64], origin: Origin, toleranc
         _ => Chain::join(&parts, origin, tolerance)?,
     };
     Ok(Rail::new(chain, Map::new(nodes.to_vec(), fractions, Reparam::Smooth, false)))
+}
+
+/// A part of a line through sections.
+struct Part {
+    /// Places of its first and last station.
+    from: usize,
+    to: usize,
+    /// Whether it is a straight line, as the main guide is there.
+    straight: bool,
+    ends: (Ends, Ends),
+}
+
+/// The parts of a line through points at the stations: they end at corners of the main guide, and where it ceases to be straight and the
+/// points, too, lie on a line.
+fn parts_of(net: &SweepNet, points: &[DVec3], tolerance: &Tolerance) -> Vec<Part> {
+    /// Points are on a line to so many roundings of a coordinate.
+    const ROUNDINGS: f64 = 64.0;
+    let main = &net.guides[0].chain;
+    let (kinks, rail) = (main.kinks(tolerance), Rail::new(main.clone(), Map::identity()));
+    let n = points.len() - 1;
+    let corner = |k: usize| kinks.iter().any(|f| (f - net.ribs[k].w).abs() <= tolerance.parameter);
+    let straight: Vec<bool> = (0..n).map(|k| rail.is_straight(net.ribs[k].w, net.ribs[k + 1].w)).collect();
+    let stops = (1..n).filter(|k| corner(*k) || straight[*k - 1] != straight[*k]);
+    let stops: Vec<usize> = std::iter::once(0).chain(stops).chain(std::iter::once(n)).collect();
+    let on_line = |from: usize, to: usize| {
+        let way = (points[to] - points[from]).normalize_or_zero();
+        let off = |p: &DVec3| (*p - points[from]).reject_from(way).length();
+        way != DVec3::ZERO && points[from..=to].iter().all(|p| off(p) <= ROUNDINGS * tolerance.rounding)
+    };
+    let mut parts: Vec<Part> = Vec::new();
+    for w in stops.windows(2) {
+        let straight = straight[w[0]] && on_line(w[0], w[1]);
+        match parts.last_mut() {
+            Some(before) if !(before.straight || straight || corner(w[0])) => before.to = w[1],
+            _ => parts.push(Part { from: w[0], to: w[1], straight, ends: (Ends::Natural, Ends::Natural) }),
+        }
+    }
+    for k in 1..parts.len() {
+        let at = parts[k].from;
+        if corner(at) {
+            continue;
+        }
+        let way = |part: &Part| Ends::Clamped(points[part.to] - points[part.from]);
+        if parts[k - 1].straight {
+            parts[k].ends.0 = way(&parts[k - 1]);
+        } else if parts[k].straight {
+            parts[k - 1].ends.1 = way(&parts[k]);
+        }
+    }
+    parts
 }
 
 /// The surface holds every section and guide, to [`NEAREST`] of its size and what they miss each other by; E413 else.

@@ -205,7 +205,34 @@ fn stations(main: &mut Main, guides: &[Guide], sections: &[Section], law: Law, c
             all.extend((1..parts).map(|n| ws[k] + (next - ws[k]) * n as f64 / parts as f64));
         }
     }
-    all
+    graded(all, closed)
+}
+
+/// A span between stations is at most so many times as long as the ones beside it: splines through uneven stations swing in long spans.
+const UNEVEN: f64 = 3.0;
+
+/// Stations with more of them in the middle of every span that is much longer than one beside it.
+fn graded(mut ws: Vec<f64>, closed: bool) -> Vec<f64> {
+    loop {
+        let n = ws.len();
+        let mut spans: Vec<f64> = ws.windows(2).map(|w| w[1] - w[0]).collect();
+        if closed {
+            spans.push(1.0 - ws[n - 1]);
+        }
+        let beside = |k: usize| {
+            let (before, after) = match closed {
+                true => (Some((k + spans.len() - 1) % spans.len()), Some((k + 1) % spans.len())),
+                false => (k.checked_sub(1), Some(k + 1)),
+            };
+            before.into_iter().chain(after).filter_map(|i| spans.get(i)).fold(f64::INFINITY, |least, span| least.min(*span))
+        };
+        let middles: Vec<f64> = (0..spans.len()).filter(|k| spans[*k] > UNEVEN * beside(*k)).map(|k| ws[k] + 0.5 * spans[k]).collect();
+        if middles.is_empty() {
+            return ws;
+        }
+        ws.extend(middles);
+        ws.sort_by(f64::total_cmp);
+    }
 }
 
 /// By how much sections and the directions of the guides turn between two fractions of the main one, radians.

@@ -139,13 +139,9 @@ fn is_cubic(axis: &BlendAxis) -> bool {
 /// Lines at which the blending functions of a direction change, with how many derivatives go on.
 fn lines(axis: &BlendAxis, degree: usize) -> Breaks {
     let mut breaks = Breaks::none(degree);
-    let smooth = match axis.rule {
-        Rule::Spline | Rule::Periodic => 2,
-        Rule::Cubic | Rule::Hermite => 1,
-        Rule::Linear => 0,
-        Rule::Lagrange => return breaks,
-    };
-    axis.nodes[1..axis.nodes.len() - 1].iter().for_each(|x| breaks.put(*x, smooth, 0.0));
+    if axis.is_piecewise() {
+        (1..axis.nodes.len() - 1).for_each(|k| breaks.put(axis.nodes[k], axis.smoothness(k), 0.0));
+    }
     breaks
 }
 
@@ -177,9 +173,9 @@ fn cardinals(axis: &BlendAxis, breaks: &Breaks) -> Vec<Vec<f64>> {
 
 /// The same of the functions of the slopes at the nodes.
 fn slopes(axis: &BlendAxis, breaks: &Breaks) -> Vec<Vec<f64>> {
-    let n = axis.nodes.len();
-    controls(n, breaks, |x, side| {
-        let mut all = vec![[0.0; 3]; n];
+    let (n, rows) = (axis.nodes.len(), axis.slopes().len());
+    controls(rows, breaks, |x, side| {
+        let mut all = vec![[0.0; 3]; rows];
         axis.weights(x, side).iter().filter(|(term, _)| *term >= n).for_each(|(term, w)| all[term - n] = *w);
         all
     })
