@@ -153,7 +153,7 @@ impl Revolved {
                 if height * rise < 0.0 {
                     return Some(None);
                 }
-                let way = across.try_normalize().unwrap_or_else(|| k.any_orthonormal_vector());
+                let way = square_way(across, k);
                 let on_line = |side: f64| {
                     let line = k * cosine + way * (side * sine);
                     apex + line * (height / n.dot(line))
@@ -183,4 +183,13 @@ impl Revolved {
         let here = |t: &f64| self.reference.dot(arc.jet(*t).p - self.about) > -tolerance.point;
         places.into_iter().find(here).map_or(arc, |t| EllipticArc { sweep: TAU, ..arc.part(t, t + TAU) })
     }
+}
+
+/// The unit vector of what of a plane's normal is across an axis; any one where that is rounding, as of a plane square to it.
+fn square_way(across: DVec3, axis: DVec3) -> DVec3 {
+    if across.length() <= EPSILON {
+        return axis.any_orthonormal_vector();
+    }
+    // A short vector has lost digits of its direction, and may lean along the axis.
+    across.normalize().reject_from_normalized(axis).try_normalize().unwrap_or_else(|| axis.any_orthonormal_vector())
 }
