@@ -16,6 +16,8 @@ use crate::surface::{Domain, Strip, Surface};
 /// Whether all elements of a mapped face (a quad as its two triangles) keep a distance from its surface, model units;
 /// `triangles` are those of the face.
 pub fn of_face(surface: &Surface, limit: f64, geometry: &FaceGeometry, triangles: &[[u32; 3]], nodes: &[DVec3]) -> Proof {
+    let prepared = surface.prepared();
+    let surface = if prepared.evaluator().has_ranges() { prepared.evaluator() } else { surface.evaluator() };
     match &geometry.nodes {
         FaceNodes::Grid(grid, frame) => {
             let region = Region { surface, u: grid.u, v: grid.v, slanted: false, limit };
@@ -29,7 +31,7 @@ pub fn of_face(surface: &Surface, limit: f64, geometry: &FaceGeometry, triangles
         }
         FaceNodes::Free(..) => Proof::Kept,
         listed => {
-            let region = Region { surface, u: (0.0, 1.0), v: (0.0, 1.0), slanted: surface.domain() == Domain::Triangle, limit };
+            let region = Region { surface, u: (0.0, 1.0), v: (0.0, 1.0), slanted: surface.surface().domain() == Domain::Triangle, limit };
             let (uv, ids) = (listed.listed_uv(), listed.listed_ids());
             let mut halves = Vec::new();
             listed.each_listed_cell(|corners| {
@@ -52,9 +54,9 @@ impl Columns {
     fn new(region: &Region, grid: &Grid) -> Option<Self> {
         let one = |i: usize| {
             let (low, high) = widened(grid.uv(i, 0).0, grid.uv(i + 1, 0).0, region.u);
-            region.surface.strip_u(low, high)
+            region.surface.surface().strip_u(low, high)
         };
-        (grid.straight == (true, true)).then(|| Self(par::map(grid.size().0, one)))
+        (grid.straight == (true, true) && !region.surface.has_ranges()).then(|| Self(par::map(grid.size().0, one)))
     }
 }
 
@@ -71,7 +73,7 @@ impl CertifyRow<'_> {
         let grid = self.grid;
         let strip = columns.map(|_| {
             let (low, high) = widened(grid.uv(0, j).1, grid.uv(0, j + 1).1, self.region.v);
-            self.region.surface.strip_v(low, high)
+            self.region.surface.surface().strip_v(low, high)
         });
         let (mut whole, mut open, mut next) = (Proof::Kept, 0, triangles.iter());
         for i in 0..grid.size().0 {
@@ -93,7 +95,7 @@ impl CertifyRow<'_> {
                 None if other => &[[0, 1, 3], [1, 2, 3]],
                 None => &[[0, 1, 2], [0, 2, 3]],
             };
-            let known = columns.zip(strip.as_ref()).map(|(columns, strip)| self.region.surface.spread_of(&columns.0[i], strip));
+            let known = columns.zip(strip.as_ref()).map(|(columns, strip)| self.region.surface.surface().spread_of(&columns.0[i], strip));
             // Along a pole any u (or v) is right.
             let free = |k: usize| pole.filter(|p| k == *p || k == (*p + 1) % 4).map(|p| p % 2);
             for half in halves {

@@ -7,7 +7,7 @@ use crate::base::tolerance::EPSILON;
 use crate::mesh::deviation::proof::{CERTIFY_SETTINGS, Proof};
 use crate::mesh::deviation::quadratic::over_sides;
 use crate::surface::core::power_form::Bends;
-use crate::surface::{Enclosure, Surface, foot_within};
+use crate::surface::{Enclosure, Evaluator, foot_within};
 
 /// An interval made wider, inside another.
 pub(super) fn widened(low: f64, high: f64, (least, most): (f64, f64)) -> (f64, f64) {
@@ -17,7 +17,7 @@ pub(super) fn widened(low: f64, high: f64, (least, most): (f64, f64)) -> (f64, f
 
 /// The part of a surface that a face covers, and how far its elements may be from it.
 pub(super) struct Region<'a> {
-    pub surface: &'a Surface,
+    pub surface: Evaluator<'a>,
     pub u: (f64, f64),
     pub v: (f64, f64),
     /// Only u + v ≤ 1 belongs to it.
@@ -108,7 +108,7 @@ impl Region<'_> {
     /// middle of the places (beyond a fold): then the point there, for any point of the surface bounds the distance.
     fn middle_of_side(&self, t: &[FlatCorner; 3], uv: &[DVec2; 3], i: usize, j: usize) -> (f64, FlatCorner) {
         let (p, guess) = (0.5 * (t[i].p + t[j].p), 0.5 * (uv[i] + uv[j]));
-        let (off, at) = foot_within(self.surface.evaluator(), p, (guess.x, guess.y), self.u, self.v);
+        let (off, at) = foot_within(self.surface, p, (guess.x, guess.y), self.u, self.v);
         let width = uv[0].max(uv[1]).max(uv[2]) - uv[0].min(uv[1]).min(uv[2]);
         let at = DVec2::from(at);
         let there = self.surface.point(guess.x, guess.y);
@@ -123,23 +123,30 @@ impl Region<'_> {
     fn bound(&self, t: &[FlatCorner; 3], uv: [DVec2; 3], known: Option<&Enclosure>) -> TriangleBound {
         let (low, high) = (uv[0].min(uv[1]).min(uv[2]), uv[0].max(uv[1]).max(uv[2]));
         let ((x0, x1), (y0, y1)) = (widened(low.x, high.x, self.u), widened(low.y, high.y, self.v));
-        let own;
-        let enclosure = match known {
-            Some(enclosure) => enclosure,
+        let width = high - low;
+        let ranges = if known.is_none() { self.surface.ranges((DVec2::new(x0, y0), DVec2::new(x1, y1))) } else { None };
+        let second = match ranges {
+            Some(second) => second,
             None => {
-                own = self.surface.enclosure((x0, x1), (y0, y1));
-                &own
+                let own;
+                let enclosure = match known {
+                    Some(enclosure) => enclosure,
+                    None => {
+                        own = self.surface.surface().enclosure((x0, x1), (y0, y1));
+                        &own
+                    }
+                };
+                let second = [enclosure.duu, enclosure.duv, enclosure.dvv];
+                if second.iter().any(Interval3::is_unbounded) {
+                    // What is left of a function without its mean slopes has slopes of half their width, and changes by half of that
+                    // on the mean over the corners.
+                    let wide = |r: &Interval3| 0.25 * (r.high - r.low).length();
+                    let bends = [width.x * wide(&enclosure.du), width.y * wide(&enclosure.dv)];
+                    return TriangleBound { error: bends[0] + bends[1], bends };
+                }
+                second
             }
         };
-        let width = high - low;
-        let second = [enclosure.duu, enclosure.duv, enclosure.dvv];
-        if second.iter().any(Interval3::is_unbounded) {
-            // What is left of a function without its mean slopes has slopes of half their width, and changes by half of that
-            // on the mean over the corners.
-            let wide = |r: &Interval3| 0.25 * (r.high - r.low).length();
-            let bends = [width.x * wide(&enclosure.du), width.y * wide(&enclosure.dv)];
-            return TriangleBound { error: bends[0] + bends[1], bends };
-        }
         let (a, b) = (t[1].foot - t[0].foot, t[2].foot - t[0].foot);
         let twice = a.cross(b).length();
         let square = |r: &Interval3| r.reach();

@@ -106,6 +106,16 @@ impl<'a> Evaluator<'a> {
         self.power_form.map_or_else(|| self.surface.square_jet(x, y), |form| form.jet(x, y))
     }
 
+    /// Ranges of ∂uu, ∂uv and ∂vv over a box inside the surface's parameters, from a blend's power form; `None` where there is none.
+    pub fn ranges(self, area: (DVec2, DVec2)) -> Option<[Interval3; 3]> {
+        self.power_form?.ranges(area)
+    }
+
+    /// Whether it has a power form that [`ranges`](Self::ranges) come from.
+    pub fn has_ranges(self) -> bool {
+        self.power_form.is_some_and(PowerForm::is_blend)
+    }
+
     /// Second derivatives along a unit vector over a box inside the surface's parameters; `None` where they are not bounded.
     pub fn bends(self, (low, high): (DVec2, DVec2), along: DVec3) -> Option<Bends> {
         if let Some(bends) = self.power_form.and_then(|form| form.bends((low, high), along)) {

@@ -1,4 +1,5 @@
-//! A net made ready for many evaluations: one polynomial a span, and bounds of its third derivatives.
+//! A net made ready for many evaluations: one polynomial a span, and bounds of its third derivatives. A blend of curves: see
+//! `shapes/blend_powers.rs`.
 //!
 //! The power form over 0…1 of a span costs a few dozen multiplications a point where the basis functions cost hundreds.
 //! With |∂³| known over a box, second derivatives in it are those in its middle and a little more: a bound for the price
@@ -6,26 +7,35 @@
 
 use std::sync::Arc;
 
-use glam::{DVec2, DVec3, DVec4};
+use glam::{DVec2, DVec3};
 
-use crate::base::tolerance::{BEFORE_KNOT, EPSILON};
+use crate::base::range::Interval3;
+use crate::base::tolerance::{BEFORE_KNOT, EPSILON, UNBOUNDED_REACH};
 use crate::base::work;
 use crate::surface::core::shape::Shape;
 use crate::surface::core::surface::Surface;
 use crate::surface::data::jet::Jet2;
 use crate::surface::data::one_sided::OneSided;
-use crate::surface::shapes::nurbs::quotient;
+use crate::surface::shapes::blend::Blend;
+use crate::surface::shapes::blend_powers::BlendPowers;
+use crate::surface::shapes::nurbs::NurbsSurface;
+use crate::surface::shapes::polynomial_pieces::BoxBends;
 use crate::surface::shapes::powers::Powers;
-use crate::surface::shapes::third_derivative_bounds::DerivativesAlong;
 
 /// Highest degree in powers: about the middle of a span they lose a factor of 2 a degree, here 4e-12 of the size.
 const HIGHEST: usize = 14;
 
-/// A net, ready.
+/// A net or a blend of curves, ready.
 #[derive(Clone, Debug)]
 pub struct PowerForm {
     surface: Surface,
-    net: Arc<Powers>,
+    form: Form,
+}
+
+#[derive(Clone, Debug)]
+enum Form {
+    Net(Arc<Powers>),
+    Blend(Arc<BlendPowers>),
 }
 
 /// Second derivatives along a unit vector over a box.
@@ -60,62 +70,75 @@ impl Bends {
 }
 
 impl Surface {
-    /// The net made ready; `None` for surfaces that are none.
+    /// The net or the blend made ready; `None` for surfaces that are neither.
     pub fn power_form(&self) -> Option<PowerForm> {
-        match &self.parts().shape {
-            Shape::Nurbs(net) if net.degree.0.max(net.degree.1) <= HIGHEST => {
-                Some(PowerForm { surface: self.clone(), net: self.ready().take(|| Powers::new(net)) })
-            }
-            _ => None,
-        }
+        let form = match &self.parts().shape {
+            Shape::Nurbs(net) if net.degree.0.max(net.degree.1) <= HIGHEST => Form::Net(self.ready().net.take(|| Some(Powers::new(net)))?),
+            Shape::Blend(blend) => Form::Blend(self.ready().blend.take(|| BlendPowers::new(blend))?),
+            _ => return None,
+        };
+        Some(PowerForm { surface: self.clone(), form })
     }
 }
 
 impl PowerForm {
-    /// Derivatives along a unit vector over a box of the net's own parameters.
-    fn derivatives(&self, area: (DVec2, DVec2), along: DVec3) -> DerivativesAlong {
-        match &self.surface.parts().shape {
-            Shape::Nurbs(net) => self.net.thirds.along(net, &|at: DVec2| self.own_jet(at.x, at.y), area, along),
-            _ => DerivativesAlong::UNBOUNDED,
+    /// The shape, and what it was made ready by.
+    fn parts(&self) -> Made<'_> {
+        match (&self.surface.parts().shape, &self.form) {
+            (Shape::Nurbs(net), Form::Net(powers)) => Made::Net(net, powers),
+            (Shape::Blend(blend), Form::Blend(powers)) => Made::Blend(blend, powers),
+            _ => Made::Neither,
+        }
+    }
+
+    /// Whether it is that of a blend.
+    pub fn is_blend(&self) -> bool {
+        matches!(self.form, Form::Blend(_))
+    }
+
+    /// Lines at which first derivatives may jump, of u or of v.
+    fn corners(&self, in_u: bool) -> &[f64] {
+        match &self.form {
+            Form::Net(powers) if in_u => &powers.corners.0,
+            Form::Net(powers) => &powers.corners.1,
+            Form::Blend(powers) => powers.corners(in_u),
         }
     }
 
     /// The point alone.
     pub fn point(&self, u: f64, v: f64) -> DVec3 {
-        work::spend(1);
         let (u, v) = self.surface.wrapped(u, v);
         let (u, v, _) = self.surface.inner(u, v, (OneSided::After, OneSided::After));
-        let ((i, s, _), (j, t, _)) = (self.net.stops.0.place(u), self.net.stops.1.place(v));
-        let mut sum = DVec4::ZERO;
-        for row in self.span(i, j).rchunks_exact(self.net.degree.0 + 1) {
-            let value = row.iter().rev().fold(DVec4::ZERO, |value, c| value * s + *c);
-            sum = sum * t + value;
+        match self.parts() {
+            Made::Net(_, powers) => {
+                work::spend(1);
+                powers.point(u, v)
+            }
+            Made::Blend(blend, powers) => {
+                work::spend(1);
+                powers.point(blend, u, v).unwrap_or_else(|| self.by_shape(u, v).p)
+            }
+            Made::Neither => self.by_shape(u, v).p,
         }
-        sum.truncate() * (1.0 / sum.w)
+    }
+
+    /// By the shape, in its own parameters.
+    fn by_shape(&self, u: f64, v: f64) -> Jet2 {
+        self.surface.parts().shape.jet(u, v, (OneSided::After, OneSided::After))
     }
 
     /// Point, ∂/∂u and ∂/∂v.
     pub fn tangents(&self, u: f64, v: f64) -> [DVec3; 3] {
-        work::spend(1);
         let (u, v) = self.surface.wrapped(u, v);
         let (u, v, _) = self.surface.inner(u, v, (OneSided::After, OneSided::After));
-        let ((i, s, w), (j, t, h)) = (self.net.stops.0.place(u), self.net.stops.1.place(v));
-        let mut sums = [DVec4::ZERO; 3];
-        for row in self.span(i, j).rchunks_exact(self.net.degree.0 + 1) {
-            let (mut value, mut slope) = (DVec4::ZERO, DVec4::ZERO);
-            for c in row.iter().rev() {
-                slope = slope * s + value;
-                value = value * s + *c;
+        let own = match self.parts() {
+            Made::Net(_, powers) => {
+                work::spend(1);
+                powers.tangents(u, v)
             }
-            sums[2] = sums[2] * t + sums[0];
-            sums[0] = sums[0] * t + value;
-            sums[1] = sums[1] * t + slope;
-        }
-        let over = 1.0 / sums[0].w;
-        let p = sums[0].truncate() * over;
-        let du = (sums[1].truncate() - p * sums[1].w) * (over * w);
-        let dv = (sums[2].truncate() - p * sums[2].w) * (over * h);
-        let jet = self.surface.outer(Jet2 { p, du, dv, ..Jet2::default() });
+            _ => self.own_jet(u, v),
+        };
+        let jet = self.surface.outer(own);
         [jet.p, jet.du, jet.dv]
     }
 
@@ -126,31 +149,19 @@ impl PowerForm {
         self.surface.outer(self.own_jet(u, v))
     }
 
-    /// The same in the net's own parameters.
+    /// The same in the shape's own parameters.
     fn own_jet(&self, u: f64, v: f64) -> Jet2 {
-        work::spend(1);
-        let ((i, s, w), (j, t, h)) = (self.net.stops.0.place(u), self.net.stops.1.place(v));
-        // Value, ∂s, ∂t, ½ ∂ss, ∂st, ½ ∂tt.
-        let mut sums = [DVec4::ZERO; 6];
-        for row in self.span(i, j).rchunks_exact(self.net.degree.0 + 1) {
-            let (mut value, mut slope, mut bend) = (DVec4::ZERO, DVec4::ZERO, DVec4::ZERO);
-            for c in row.iter().rev() {
-                bend = bend * s + slope;
-                slope = slope * s + value;
-                value = value * s + *c;
+        match self.parts() {
+            Made::Net(_, powers) => {
+                work::spend(1);
+                powers.jet(u, v)
             }
-            sums[5] = sums[5] * t + sums[2];
-            sums[2] = sums[2] * t + sums[0];
-            sums[0] = sums[0] * t + value;
-            sums[4] = sums[4] * t + sums[1];
-            sums[1] = sums[1] * t + slope;
-            sums[3] = sums[3] * t + bend;
+            Made::Blend(blend, powers) => {
+                work::spend(1);
+                powers.jet(blend, u, v).unwrap_or_else(|| self.by_shape(u, v))
+            }
+            Made::Neither => self.by_shape(u, v),
         }
-        let scale = [1.0, w, h, 2.0 * w * w, w * h, 2.0 * h * h];
-        for (sum, scale) in sums.iter_mut().zip(scale) {
-            *sum *= scale;
-        }
-        quotient(&sums)
     }
 
     /// Second derivatives along a unit vector over a box of (u, v), and what jumps of first ones inside add; `None` over a seam.
@@ -164,78 +175,91 @@ impl PowerForm {
         if low.min_element() < -EPSILON || high.max_element() > 1.0 + EPSILON {
             return None;
         }
+        let bends = match self.parts() {
+            Made::Net(net, powers) => self.over_spans((net, powers), (low, high), along)?,
+            Made::Blend(blend, powers) => self.turned(&powers.bends(blend, (low, high), along)?),
+            Made::Neither => return None,
+        };
+        Some(Bends { jump: self.jump((low, high), along), ..bends })
+    }
+
+    /// Ranges of ∂uu, ∂uv and ∂vv over a box of (u, v); `None` of a net, over a seam, and where first derivatives jump inside.
+    pub fn ranges(&self, (low, high): (DVec2, DVec2)) -> Option<[Interval3; 3]> {
+        let Made::Blend(blend, powers) = self.parts() else { return None };
+        work::spend(4);
+        let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+        let (u, v) = self.surface.wrapped(middle.x, middle.y);
+        let (u, v, _) = self.surface.inner(u, v, (OneSided::After, OneSided::After));
+        let (low, high) = (DVec2::new(u, v) - half, DVec2::new(u, v) + half);
+        if low.min_element() < -EPSILON || high.max_element() > 1.0 + EPSILON {
+            return None;
+        }
+        let [duu, duv, dvv] = powers.ranges(blend, (low, high))?;
+        Some([duu, if self.surface.parts().flipped { -duv } else { duv }, dvv])
+    }
+
+    /// Second derivatives of a net over a box, part by part between knots where they jump.
+    fn over_spans(&self, (net, powers): (&NurbsSurface, &Powers), (low, high): (DVec2, DVec2), along: DVec3) -> Option<Bends> {
         let mut whole: Option<Bends> = None;
         let mut from = low;
-        for y in crossed(&self.net.rough.1, low.y, high.y).chain([high.y]) {
+        for y in crossed(&powers.rough.1, low.y, high.y).chain([high.y]) {
             from.x = low.x;
-            for x in crossed(&self.net.rough.0, low.x, high.x).chain([high.x]) {
-                let own = self.smooth((from, DVec2::new(x, y)), along);
+            for x in crossed(&powers.rough.0, low.x, high.x).chain([high.x]) {
+                let own = self.turned(&powers.bends(net, (from, DVec2::new(x, y)), along));
                 whole = Some(whole.map_or(own, |w| w.union(&own)));
                 from.x = x;
             }
             from.y = y;
         }
-        let jump = self.jump((low, high), along);
-        whole.map(|whole| Bends { jump, ..whole })
+        whole
     }
 
-    /// How far jumps of first derivatives in a box of the net's own parameters move the surface along a unit vector away from
+    /// How far jumps of first derivatives in a box of the shape's own parameters move the surface along a unit vector away from
     /// what second derivatives say of it between any three places in the box. `docs/notes/bounds.md` has the formula.
     fn jump(&self, (low, high): (DVec2, DVec2), along: DVec3) -> f64 {
-        let net = &self.net;
         let own = |lines: &[f64], (a, b): (f64, f64), at: &dyn Fn(f64) -> f64| {
             crossed(lines, a, b).map(|c| at(c) * (c - a) * (b - c) / (b - a)).sum::<f64>()
         };
         let (wide, high_up) = ((low.x, high.x), (low.y, high.y));
-        own(&net.corners.0, wide, &|c| self.jump_along(true, c, high_up, along))
-            + own(&net.corners.1, high_up, &|c| self.jump_along(false, c, wide, along))
+        own(self.corners(true), wide, &|c| self.jump_along(true, c, high_up, along))
+            + own(self.corners(false), high_up, &|c| self.jump_along(false, c, wide, along))
     }
 
-    /// The largest jump of the first derivative across a knot, along a unit vector, between two places of the knot's line.
+    /// The largest jump of the first derivative across a line, along a unit vector, between two places of it.
     fn jump_along(&self, in_u: bool, c: f64, (low, high): (f64, f64), along: DVec3) -> f64 {
-        let net = &self.net;
-        let place = |x: f64, y: f64| if in_u { (x, y) } else { (y, x) };
-        let slopes = |jet: &Jet2| if in_u { (jet.du, jet.duv) } else { (jet.dv, jet.duv) };
-        let mut from = low;
-        let mut most = 0.0_f64;
-        // The jump is smooth between knots of the line alone.
-        let rough = if in_u { &net.rough.1 } else { &net.rough.0 };
-        for to in crossed(rough, low, high).chain([high]) {
-            let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
-            let beside = |x: f64| {
-                let (u, v) = place(x, middle);
-                slopes(&self.surface.outer(self.own_jet(u, v)))
-            };
-            let (before, after) = (beside(c - BEFORE_KNOT), beside(c));
-            let ends = [place(c - BEFORE_KNOT, from), place(c + BEFORE_KNOT, to)].map(|(u, v)| DVec2::new(u, v));
-            let third = self.derivatives((ends[0], ends[1]), along).third[if in_u { 2 } else { 1 }];
-            let jump = (after.0 - before.0).dot(along).abs() + half * (after.1 - before.1).dot(along).abs() + half * half * third;
-            most = most.max(jump);
-            from = to;
-        }
-        most
+        let place = |x: f64, y: f64| if in_u { DVec2::new(x, y) } else { DVec2::new(y, x) };
+        let middle = 0.5 * (low + high);
+        let beside = |x: f64| {
+            let at = place(x, middle);
+            let jet = self.surface.outer(self.own_jet(at.x, at.y));
+            if in_u { (jet.du, jet.duv) } else { (jet.dv, jet.duv) }
+        };
+        let (before, after) = (beside(c - BEFORE_KNOT), beside(c));
+        let off = (after.0 - before.0).dot(along).abs();
+        // How the jump changes along the line: by the mixed derivatives beside it.
+        let strip = |x: f64| match self.parts() {
+            Made::Net(net, powers) => self.over_spans((net, powers), (place(x, low), place(x, high)), along),
+            Made::Blend(blend, powers) => powers.bends(blend, (place(x, low), place(x, high)), along).map(|b| self.turned(&b)),
+            Made::Neither => None,
+        };
+        let (Some(a), Some(b)) = (strip(c - BEFORE_KNOT), strip(c + BEFORE_KNOT)) else { return UNBOUNDED_REACH };
+        off + 0.5 * (high - low) * ((b.mid[1] - a.mid[1]).abs() + a.slack[1] + b.slack[1])
     }
 
-    /// The same over a box of the net's own parameters in which second derivatives do not jump.
-    fn smooth(&self, (low, high): (DVec2, DVec2), along: DVec3) -> Bends {
-        let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
-        let DerivativesAlong { third, low, high } = self.derivatives((low, high), along);
-        let jet = self.own_jet(middle.x, middle.y);
-        let range = |k: usize, at: DVec3| {
-            let (at, slack) = (at.dot(along), third[k] * half.x + third[k + 1] * half.y);
-            let (low, high) = (low[k].max(at - slack), high[k].min(at + slack));
-            // Middle and half width, to be turned as derivatives are.
-            DVec3::new(0.5 * (low + high), 0.5 * (high - low), 0.0)
-        };
-        let turned = self.surface.outer(Jet2 { duu: range(0, jet.duu), duv: range(1, jet.duv), dvv: range(2, jet.dvv), ..Jet2::default() });
+    /// Middles and half widths turned as second derivatives are.
+    fn turned(&self, own: &BoxBends) -> Bends {
+        let range = |k: usize| DVec3::new(own.mid[k], own.slack[k], 0.0);
+        let turned = self.surface.outer(Jet2 { duu: range(0), duv: range(1), dvv: range(2), ..Jet2::default() });
         let ranges = [turned.duu, turned.duv, turned.dvv];
         Bends { mid: ranges.map(|r| r.x), slack: ranges.map(|r| r.y.abs()), jump: 0.0 }
     }
+}
 
-    fn span(&self, i: usize, j: usize) -> &[DVec4] {
-        let n = (self.net.degree.0 + 1) * (self.net.degree.1 + 1);
-        &self.net.powers[(j * self.net.stops.0.by.len() + i) * n..][..n]
-    }
+/// A shape with what it was made ready by.
+enum Made<'a> {
+    Net(&'a NurbsSurface, &'a Powers),
+    Blend(&'a Blend, &'a BlendPowers),
+    Neither,
 }
 
 /// Lines strictly inside an interval.

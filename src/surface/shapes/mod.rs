@@ -1,9 +1,11 @@
 //! What a surface may be by itself, evaluated and bounded: blended curves, nets, profiles in motion, heights over a plane. Nothing here
 //! knows of the others or of [`Surface`](super::core::surface::Surface).
 
+mod axis_powers;
 pub mod blend;
 pub mod blend_enclosure;
 mod blend_grid;
+pub mod blend_powers;
 mod blend_terms;
 pub mod cardinal;
 pub mod cubic_triangle;
@@ -14,6 +16,7 @@ pub mod matrices;
 pub mod net_enclosure;
 pub mod nurbs;
 mod nurbs_grid;
+pub mod polynomial_pieces;
 pub mod powers;
 pub mod rule;
 pub mod speed_map;

@@ -2,13 +2,16 @@
 
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 
-use glam::DVec4;
+use glam::{DVec2, DVec3, DVec4};
 
 use crate::geometry::shapes::bounds::binomial;
 use crate::geometry::shapes::nurbs::COMMON_DEGREE;
+use crate::surface::data::jet::Jet2;
+use crate::surface::shapes::blend_powers::BlendPowers;
 use crate::surface::shapes::net_enclosure::NetStrip;
-use crate::surface::shapes::nurbs::{NurbsSurface, multiplicity};
-use crate::surface::shapes::third_derivative_bounds::ThirdDerivativeBounds;
+use crate::surface::shapes::nurbs::{NurbsSurface, multiplicity, quotient};
+use crate::surface::shapes::polynomial_pieces::BoxBends;
+use crate::surface::shapes::third_derivative_bounds::{DerivativesAlong, ThirdDerivativeBounds};
 
 /// What is made of a net: shared by all that use it at the same time, and gone with the last of them, for it takes many times
 /// the room of the net.
@@ -54,19 +57,33 @@ impl Stops {
     }
 }
 
-/// The powers of a surface that is a net, while somebody holds them.
-#[derive(Debug, Default)]
-pub(crate) struct Ready(Mutex<Weak<Powers>>);
+/// What a surface is made ready by, while somebody holds it.
+#[derive(Debug)]
+pub(crate) struct Held<T>(Mutex<Weak<T>>);
 
-impl Ready {
-    pub(crate) fn take(&self, make: impl FnOnce() -> Powers) -> Arc<Powers> {
-        let mut held = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        held.upgrade().unwrap_or_else(|| {
-            let made = Arc::new(make());
-            *held = Arc::downgrade(&made);
-            made
-        })
+impl<T> Default for Held<T> {
+    fn default() -> Self {
+        Self(Mutex::new(Weak::new()))
     }
+}
+
+impl<T> Held<T> {
+    pub(crate) fn take(&self, make: impl FnOnce() -> Option<T>) -> Option<Arc<T>> {
+        let mut held = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(held) = held.upgrade() {
+            return Some(held);
+        }
+        let made = Arc::new(make()?);
+        *held = Arc::downgrade(&made);
+        Some(made)
+    }
+}
+
+/// The powers of a surface that is a net, or blended from curves.
+#[derive(Debug, Default)]
+pub(crate) struct Ready {
+    pub net: Held<Powers>,
+    pub blend: Held<BlendPowers>,
 }
 
 impl Powers {
@@ -92,6 +109,85 @@ impl Powers {
             rough,
             stops: (Stops::new(stops.0, net.degree.0), Stops::new(stops.1, net.degree.1)),
         }
+    }
+}
+
+impl Powers {
+    /// The point.
+    pub(crate) fn point(&self, u: f64, v: f64) -> DVec3 {
+        let ((i, s, _), (j, t, _)) = (self.stops.0.place(u), self.stops.1.place(v));
+        let mut sum = DVec4::ZERO;
+        for row in self.span(i, j).rchunks_exact(self.degree.0 + 1) {
+            let value = row.iter().rev().fold(DVec4::ZERO, |value, c| value * s + *c);
+            sum = sum * t + value;
+        }
+        sum.truncate() * (1.0 / sum.w)
+    }
+
+    /// Point and first derivatives; the others are 0.
+    pub(crate) fn tangents(&self, u: f64, v: f64) -> Jet2 {
+        let ((i, s, w), (j, t, h)) = (self.stops.0.place(u), self.stops.1.place(v));
+        let mut sums = [DVec4::ZERO; 3];
+        for row in self.span(i, j).rchunks_exact(self.degree.0 + 1) {
+            let (mut value, mut slope) = (DVec4::ZERO, DVec4::ZERO);
+            for c in row.iter().rev() {
+                slope = slope * s + value;
+                value = value * s + *c;
+            }
+            sums[2] = sums[2] * t + sums[0];
+            sums[0] = sums[0] * t + value;
+            sums[1] = sums[1] * t + slope;
+        }
+        let over = 1.0 / sums[0].w;
+        let p = sums[0].truncate() * over;
+        let du = (sums[1].truncate() - p * sums[1].w) * (over * w);
+        let dv = (sums[2].truncate() - p * sums[2].w) * (over * h);
+        Jet2 { p, du, dv, ..Jet2::default() }
+    }
+
+    /// Point and all derivatives.
+    pub(crate) fn jet(&self, u: f64, v: f64) -> Jet2 {
+        let ((i, s, w), (j, t, h)) = (self.stops.0.place(u), self.stops.1.place(v));
+        // Value, ∂s, ∂t, ½ ∂ss, ∂st, ½ ∂tt.
+        let mut sums = [DVec4::ZERO; 6];
+        for row in self.span(i, j).rchunks_exact(self.degree.0 + 1) {
+            let (mut value, mut slope, mut bend) = (DVec4::ZERO, DVec4::ZERO, DVec4::ZERO);
+            for c in row.iter().rev() {
+                bend = bend * s + slope;
+                slope = slope * s + value;
+                value = value * s + *c;
+            }
+            sums[5] = sums[5] * t + sums[2];
+            sums[2] = sums[2] * t + sums[0];
+            sums[0] = sums[0] * t + value;
+            sums[4] = sums[4] * t + sums[1];
+            sums[1] = sums[1] * t + slope;
+            sums[3] = sums[3] * t + bend;
+        }
+        let scale = [1.0, w, h, 2.0 * w * w, w * h, 2.0 * h * h];
+        for (sum, scale) in sums.iter_mut().zip(scale) {
+            *sum *= scale;
+        }
+        quotient(&sums)
+    }
+
+    /// Second derivatives along a unit vector over a box in which they do not jump.
+    pub(crate) fn bends(&self, net: &NurbsSurface, (low, high): (DVec2, DVec2), along: DVec3) -> BoxBends {
+        let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+        let DerivativesAlong { third, low, high } = self.thirds.along(net, &|at: DVec2| self.jet(at.x, at.y), (low, high), along);
+        let jet = self.jet(middle.x, middle.y);
+        let range = |k: usize, at: DVec3| {
+            let (at, slack) = (at.dot(along), third[k] * half.x + third[k + 1] * half.y);
+            let (low, high) = (low[k].max(at - slack), high[k].min(at + slack));
+            (0.5 * (low + high), 0.5 * (high - low))
+        };
+        let ranges = [range(0, jet.duu), range(1, jet.duv), range(2, jet.dvv)];
+        BoxBends { mid: ranges.map(|r| r.0), slack: ranges.map(|r| r.1) }
+    }
+
+    fn span(&self, i: usize, j: usize) -> &[DVec4] {
+        let n = (self.degree.0 + 1) * (self.degree.1 + 1);
+        &self.powers[(j * self.stops.0.by.len() + i) * n..][..n]
     }
 }
 

@@ -83,7 +83,6 @@ pub(crate) struct DerivativesAlong {
 }
 
 impl DerivativesAlong {
-    pub(crate) const UNBOUNDED: Self = Self { third: [f64::INFINITY; 4], low: [f64::NEG_INFINITY; 3], high: [f64::INFINITY; 3] };
     const NONE: Self = Self { third: [0.0; 4], low: [f64::INFINITY; 3], high: [f64::NEG_INFINITY; 3] };
 }
 
