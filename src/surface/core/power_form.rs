@@ -15,6 +15,7 @@ use crate::base::work;
 use crate::surface::core::shape::Shape;
 use crate::surface::core::surface::Surface;
 use crate::surface::data::jet::Jet2;
+use crate::surface::data::kind::SurfaceKind;
 use crate::surface::data::one_sided::OneSided;
 use crate::surface::shapes::blend::Blend;
 use crate::surface::shapes::blend_powers::BlendPowers;
@@ -74,7 +75,8 @@ impl Surface {
     pub fn power_form(&self) -> Option<PowerForm> {
         let form = match &self.parts().shape {
             Shape::Nurbs(net) if net.degree.0.max(net.degree.1) <= HIGHEST => Form::Net(self.ready().net.take(|| Some(Powers::new(net)))?),
-            Shape::Blend(blend) => Form::Blend(self.ready().blend.take(|| BlendPowers::new(blend))?),
+            // A plane with a map is evaluated as cheaply by itself.
+            Shape::Blend(blend) if self.kind() != SurfaceKind::Plane => Form::Blend(self.ready().blend.take(|| BlendPowers::new(blend))?),
             _ => return None,
         };
         Some(PowerForm { surface: self.clone(), form })
