@@ -309,3 +309,66 @@ export ball to \"ball.step\"
     assert_eq!(files["ball.step"].matches("EDGE_CURVE").count(), 1);
     assert_eq!(files["ball.step"].matches("ORIENTED_EDGE").count(), 2);
 }
+
+/// Faces along lines and arcs are planes, cylinders, tori and spheres with lines and circles as edges, each with the name of its face; what
+/// is written reads back with the same areas.
+#[test]
+fn lines_and_arcs_in_a_row_leave_as_their_forms() {
+    let model = r#"units mm
+curve rim = polyline([(0, 0), (40, 0), (40, 30), (0, 30)], closed: true, round: 8mm)
+surface wall = extrude(rim, by: (0, 0, 10))
+surface foot = plane(rim)
+surface lid = move(foot, by: (0, 0, 10))
+shell box of foot, lid, wall
+curve section = polyline([(60, 0, 0), (80, 0, 0), (80, 0, 20), (60, 0, 20)], closed: true, round: 4mm)
+surface tyre = revolve(section)
+shell ring of tyre
+curve bullet = arc((0, 0, -30), (10, 0, -20), through: (10 * sqrt(0.5), 0, -20 - 10 * sqrt(0.5))) + line((10, 0, -20), (10, 0, -5)) + line((10, 0, -5), (0, 0, -5))
+surface pin = revolve(bullet)
+shell stud of pin
+surface lens = revolve(ellipse(center: (100, 0, 0), major: (5, 0, 0), minor: (0, 2, 0)), axis: (0, 1, 0), about: (120, 0, 0), angle: 90deg)
+export box to "box.step"
+export ring to "ring.step"
+export stud to "stud.step"
+export lens to "lens.step"
+export foot to "foot.step"
+export box to "box.igs"
+export foot to "foot.igs"
+"#;
+    let files = run("rows", model);
+    let forms = |name: &str| {
+        let all = records(&files[name]);
+        let names = ["PLANE", "CYLINDRICAL_SURFACE", "CONICAL_SURFACE", "SPHERICAL_SURFACE", "TOROIDAL_SURFACE", "LINE", "CIRCLE"];
+        assert!(!files[name].contains("B_SPLINE"), "{name}");
+        names.map(|form| of_type(&all, form).len())
+    };
+    assert_eq!(forms("box.step"), [6, 4, 0, 0, 0, 16, 8]);
+    assert_eq!(forms("ring.step"), [2, 2, 0, 0, 4, 4, 12]);
+    assert_eq!(forms("stud.step"), [1, 1, 0, 1, 0, 2, 3]);
+    assert_eq!(forms("foot.step"), [1, 0, 0, 0, 0, 4, 4]);
+    assert_eq!(files["lens.step"].matches("SURFACE_OF_REVOLUTION").count(), 1);
+    let named = |name: &str, face: &str| of_type(&records(&files[name]), "ADVANCED_FACE").iter().filter(|f| f.1.contains(face)).count();
+    assert_eq!((named("box.step", "'wall'"), named("box.step", "'foot'"), named("ring.step", "'tyre'")), (8, 1, 8));
+    let entities = |name: &str, kind: u32| {
+        files[name]
+            .lines()
+            .filter(|l| {
+                l.ends_with(|c: char| c.is_ascii_digit()) && l.as_bytes()[72] == b'D' && l.trim_start().starts_with(&format!("{kind} "))
+            })
+            .count()
+            / 2
+    };
+    assert_eq!([190, 192, 110, 100, 126, 128].map(|kind| entities("box.igs", kind)), [6, 4, 16, 8, 0, 0]);
+    assert_eq!([190, 514, 126, 128].map(|kind| entities("foot.igs", kind)), [1, 1, 0, 0]);
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("step_out_rows");
+    let back = ["box.step", "ring.step", "stud.step", "box.igs"]
+        .map(|name| format!("import \"{}\" as {}\n", folder.join(name).display(), name.replace('.', "_")))
+        .concat();
+    let checks = r#"check "box": box_step.volume == (1200 - (4 - pi) * 64) * 10mm3 within 1e-9
+check "again": box_igs.volume == box_step.volume within 1e-9
+check "ring": ring_step.volume == 2 * pi * 70 * (400 - (4 - pi) * 16) * 1mm3 within 1e-7
+check "stud": stud_step.volume == pi * (1500 + 2000 / 3) * 1mm3 within 1e-8
+check "names": len(box_step.faces) == 10 and area(box_step["wall_8"]) == area(box_step["wall_4"]) within 1e-9
+"#;
+    run("rows_back", &format!("units mm\n{back}{checks}"));
+}

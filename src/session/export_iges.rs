@@ -1,7 +1,7 @@
 //! `export … to "x.igs"`: shells become solids, or trimmed surfaces in a group.
 
 use super::export::{Colors, Written, no_mesh_settings, put, unit_of};
-use super::export_faces::{layers, whole};
+use super::export_faces::{layers, lone, whole};
 use super::plan::surfaces_of;
 use crate::base::fault::Say;
 use crate::base::origin::Origin;
@@ -21,17 +21,20 @@ pub(super) fn iges(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<
     let (unit, scale) = unit_of(cx, spec);
     let tolerance = cx.tolerance()?;
     let as_faces = spec.shells.as_ref().is_some_and(|(word, _)| **word == *"faces");
-    let shells = || spec.things.iter().map(|(value, _)| value).filter(|value| matches!(value, Value::Shell(_)) && !as_faces);
-    let scene = match shells().next() {
-        Some(_) => Some(Scene::of(cx, ModuleId::MAIN, shells().flat_map(surfaces_of))?),
-        None => None,
+    // What has faces that share edges; a surface by itself where other programs know its forms by name.
+    let has_faces = |value: &Value| match value {
+        Value::Shell(_) => !as_faces,
+        Value::Surface(surface) => !as_faces && surface.has_forms(&tolerance),
+        _ => false,
     };
+    let solid: Vec<&Surface> = spec.things.iter().map(|(value, _)| value).filter(|value| has_faces(value)).flat_map(surfaces_of).collect();
+    let scene = if solid.is_empty() { None } else { Some(Scene::of(cx, ModuleId::MAIN, solid)?) };
     let colors = Colors::of(cx);
     let one = |cx: &Cx, of: Origin, shown: IgesShape| {
         let color = match &shown {
             IgesShape::Curve(chain) => colors.of_curve(chain),
             IgesShape::Surface(surface) => colors.of_surface(surface),
-            IgesShape::Point(_) | IgesShape::Faces(_) => None,
+            IgesShape::Point(_) | IgesShape::Faces(_) | IgesShape::Face(..) => None,
         };
         IgesThing { name: cx.name(of), group: String::new(), layers: Vec::new(), color, shown }
     };
@@ -53,14 +56,20 @@ pub(super) fn iges(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<
                 let name = super::plan::edge_name(cx, &chain, edge);
                 things.push(IgesThing { name, ..one(cx, *origin, IgesShape::Curve(chain)) });
             }
-            Value::Surface(surface) => things.push(face(cx, surface)),
+            Value::Surface(surface) => things.push(match &scene {
+                Some(scene) if has_faces(value) => {
+                    let faces = lone(cx, scene, surface, &tolerance, &colors)?;
+                    IgesThing { shown: IgesShape::Face(Box::new(faces), surface.clone()), color: None, ..face(cx, surface) }
+                }
+                _ => face(cx, surface),
+            }),
             Value::Shell(shell) => match &scene {
-                Some(scene) => {
+                Some(scene) if !as_faces => {
                     let name = cx.body_said(shell).map_or(&shell.name, |[_, only]| only).to_string();
                     let faces = whole(cx, scene, shell, &tolerance, &colors)?;
                     things.push(IgesThing { name, ..one(cx, *origin, IgesShape::Faces(Box::new(faces))) });
                 }
-                None => {
+                _ => {
                     let group = cx.body_said(shell).map_or(&shell.name, |[_, only]| only);
                     things.extend(shell.surfaces.iter().map(|s| IgesThing { group: group.to_string(), ..face(cx, s) }));
                 }

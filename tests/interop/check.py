@@ -25,6 +25,7 @@ import cad_in
 import cad_mesh
 import members
 import orders
+import profiles
 import read_back
 import rounded
 import solve
@@ -181,6 +182,8 @@ def measured_surfaces(tally, loft, work, _decks):
     for model in sorted(glob.glob(os.path.join(HERE, "models", "surfaces", "*.loft"))):
         label = f"{os.path.basename(model)} by OpenCASCADE"
         tally.check(label, lambda model=model: surfaces.check(lambda *a: run_loft(loft, *a), model, work))
+    for seed in profiles.SEEDS:
+        tally.check(f"profile {seed} by OpenCASCADE", lambda seed=seed: profiles.check(loft, work, seed))
     tally.check("roundings and walls by OpenCASCADE", lambda: rounded.check(lambda *a: run_loft(loft, *a), work))
 
 

@@ -1,5 +1,6 @@
 //! Faces that were declared as one thing, with the edges and corners that they share, as writers of solids take them.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -13,11 +14,13 @@ use crate::geometry::{Curve, Kind};
 use crate::io::cad::curve_on_surface::fitted;
 use crate::io::cad::defect::{Defect, defect};
 use crate::io::cad::degenerate_edges::FileBorders;
+use crate::io::cad::edge_pieces;
 use crate::io::cad::elementary_surface::{self, Ground};
 use crate::model::body::BodyLoop;
 use crate::model::{Body, BodyEdge, BodyFace, Model, Shell, SurfaceId, measure};
 use crate::network::Network;
 use crate::surface::Off;
+use crate::surface::analysis::elementary::MovedArc;
 
 /// Faces that were declared as one thing.
 #[derive(Clone, Debug)]
@@ -41,12 +44,14 @@ pub struct Faces {
 /// Faces with their surfaces, and the edges and corners that they share.
 #[derive(Debug)]
 pub struct Bodies<'f> {
-    /// The faces as they were declared.
-    pub faces: &'f Faces,
+    /// The faces as they were declared, cut where their exact forms meet.
+    pub faces: Cow<'f, Faces>,
     /// Which edges each face has.
     pub body: Body,
     /// The surface of each face.
     pub grounds: Vec<Ground>,
+    /// Of nets that are an arc moved or turned, that.
+    pub arcs: Vec<Option<MovedArc>>,
     /// Corners as the file has them, model units.
     pub vertices: Vec<DVec3>,
     /// The curve of each edge that some face uses, in the direction of the edge.
@@ -71,13 +76,20 @@ pub struct SolidSkins {
 impl Faces {
     /// The faces as files have them; fails where there is none, where their edges do not close, and for a plane without a border.
     pub fn bodies(&self, tolerance: &Tolerance) -> Result<Bodies<'_>, Defect> {
-        let body = self.model.body(&self.shell, &self.network, tolerance)?;
+        let (faces, parted) = match self.in_pieces(tolerance)? {
+            Some((cut, parted)) => (Cow::Owned(cut), parted),
+            None => (Cow::Borrowed(self), Vec::new()),
+        };
+        let mut body = faces.model.body(&faces.shell, &faces.network, tolerance)?;
         if body.faces.is_empty() {
             return Err(defect("it is thinner than the gluing distance, so it has no face"));
         }
-        let grounds = par::try_map(body.faces.len(), |k| self.ground(&body.faces[k], tolerance))?;
+        let grounds = par::try_map(body.faces.len(), |k| faces.ground(&body.faces[k], tolerance))?;
+        let arcs = body.faces.iter().zip(&grounds).map(|(face, ground)| faces.arc(face, ground, tolerance)).collect();
         let placed = FileBorders::new(&body, &grounds, tolerance);
-        let curves = self.curves(&body, &placed, tolerance)?;
+        let mut curves = faces.curves(&body, &placed, tolerance)?;
+        let mut vertices = placed.vertices;
+        edge_pieces::part_edges(&mut body, &mut vertices, &mut curves, tolerance);
         let is_open = |face: &BodyFace| face.loops.is_empty() || face.loops.iter().any(|around| !body.is_closed(around));
         if body.faces.iter().any(is_open) {
             return Err(defect("the edges round one of its faces do not close"));
@@ -86,18 +98,28 @@ impl Faces {
             Ground::Net(_, own, _) => (off.0.max(own.distance()), off.1 || matches!(own, Off::Sampled(_))),
             Ground::Elementary(_) => off,
         });
-        let mut thin: Vec<SurfaceId> = body.slivers.iter().map(|patch| self.model.patches[patch.index()].surface).collect();
+        let mut thin: Vec<SurfaceId> = body.slivers.iter().map(|patch| faces.model.patches[patch.index()].surface).collect();
         thin.dedup();
         let is_gone = |id: &&SurfaceId| body.faces.iter().all(|face| face.surface != **id);
-        let area = |id: &SurfaceId| measure::area(&self.model.surfaces[id.index()].surface);
+        // Of a surface that was cut here a piece in its axis is nothing.
+        thin.retain(|id| !parted.contains(id) || is_gone(&id));
+        let area = |id: &SurfaceId| measure::area(&faces.model.surfaces[id.index()].surface);
         let thin_area = thin.iter().filter(is_gone).map(area).sum();
-        Ok(Bodies { faces: self, grounds, vertices: placed.vertices, curves, off, thin, thin_area, body })
+        Ok(Bodies { grounds, arcs, vertices, curves, off, thin, thin_area, body, faces })
     }
 
     fn ground(&self, face: &BodyFace, tolerance: &Tolerance) -> Result<Ground, Defect> {
         let surface = &self.model.surfaces[face.surface.index()].surface;
         let found = elementary_surface::ground(surface, &self.model.patches[face.patch.index()], tolerance)?;
         found.ok_or_else(|| defect("a plane without a border is not a face"))
+    }
+
+    fn arc(&self, face: &BodyFace, ground: &Ground, tolerance: &Tolerance) -> Option<MovedArc> {
+        let patch = &self.model.patches[face.patch.index()];
+        match ground {
+            Ground::Net(..) if patch.u == (0.0, 1.0) => self.model.surfaces[face.surface.index()].surface.moved_arc(patch.v, tolerance),
+            _ => None,
+        }
     }
 
     /// The curves of the edges that some face uses.

@@ -6,9 +6,10 @@ use crate::base::tolerance::{PARALLEL, Tolerance};
 use crate::geometry::Curve;
 use crate::geometry::curves::curve::Shape as CurveShape;
 use crate::geometry::shapes::arc::EllipticArc;
+use crate::surface::core::plane::unmapped;
 use crate::surface::core::shape::Shape;
 use crate::surface::core::surface::Surface;
-use crate::surface::data::kind::Domain;
+use crate::surface::data::kind::{Domain, SurfaceKind};
 use crate::surface::rails::rail::Rail;
 use crate::surface::rails::side::between;
 use crate::surface::shapes::sweep::Path;
@@ -74,21 +75,17 @@ impl Surface {
     pub fn elementary(&self, v: (f64, f64), tolerance: &Tolerance) -> Option<Elementary> {
         let parts = self.parts();
         match &parts.shape {
-            Shape::Plane(_) => {
-                let jet = self.jet(0.0, 0.0);
-                let normal = jet.du.cross(jet.dv).normalize_or_zero();
-                Some(Elementary { form: Form::Plane { at: jet.p, normal }, reference: jet.du.normalize_or_zero(), along: true })
+            Shape::Plane(_) => Some(self.flat_form()),
+            // A map over a plane does not change where it is.
+            _ if parts.kind == SurfaceKind::Plane => {
+                let flat = unmapped(self, tolerance).ok().filter(Surface::is_flat)?;
+                let jet = self.jet(0.5, 0.5 * (v.0 + v.1));
+                let found = flat.flat_form();
+                Some(Elementary { along: found.form.normal_is(jet.p, jet.du.cross(jet.dv)), ..found })
             }
-            Shape::Sweep(sweep) => {
-                let Rail::Chain { chain, map, .. } = sweep.profile() else { return None };
-                let whole = (0.0, 1.0);
-                let (from, to) = match (self.domain(), parts.flipped) {
-                    (Domain::Loop, _) => whole,
-                    (_, true) => (1.0 - v.1, 1.0 - v.0),
-                    (_, false) => v,
-                };
-                let profile = between(chain, map.value(from), map.value(to), tolerance).ok()?.to_curve().ok()?;
-                let (form, reference) = match sweep.path() {
+            Shape::Sweep(_) => {
+                let (profile, path) = self.moved_profile(v, tolerance)?;
+                let (form, reference) = match path {
                     Path::Straight { by } => extruded(&profile, by),
                     Path::Turn { about, axis, angle } => turned(&profile, Axis { about, direction: axis * angle.signum() }, tolerance),
                 }?;
@@ -99,6 +96,80 @@ impl Surface {
             }
             _ => None,
         }
+    }
+}
+
+/// An arc of a circle or an ellipse, moved or turned: exact where it is no [`Form`].
+#[derive(Clone, Debug)]
+pub struct MovedArc {
+    /// The arc; the normal of the surface is its direction across that of the way for a straight way, else the other way round.
+    pub profile: EllipticArc,
+    /// Its way.
+    pub path: Path,
+}
+
+impl Surface {
+    /// The arc that makes an extruded or revolved surface between two values of v; `None` where that is no single arc.
+    pub fn moved_arc(&self, v: (f64, f64), tolerance: &Tolerance) -> Option<MovedArc> {
+        let (profile, path) = self.moved_profile(v, tolerance)?;
+        let CurveShape::Arc(arc) = profile.shape() else { return None };
+        let middle = arc.jet(0.5 * arc.sweep);
+        let way = match path {
+            Path::Straight { by } => by,
+            Path::Turn { about, axis, .. } => (middle.p - about).cross(axis),
+        };
+        let jet = self.jet(0.0, 0.5 * (v.0 + v.1));
+        let along = middle.d1.cross(way).dot(jet.du.cross(jet.dv)) > 0.0;
+        Some(MovedArc { profile: if along { **arc } else { arc.reversed() }, path })
+    }
+
+    /// The profile of a sweep between two values of v, and its way.
+    fn moved_profile(&self, v: (f64, f64), tolerance: &Tolerance) -> Option<(Curve, Path)> {
+        let parts = self.parts();
+        let Shape::Sweep(sweep) = &parts.shape else { return None };
+        let Rail::Chain { chain, map, .. } = sweep.profile() else { return None };
+        let (from, to) = match (self.domain(), parts.flipped) {
+            (Domain::Loop, _) => (0.0, 1.0),
+            (_, true) => (1.0 - v.1, 1.0 - v.0),
+            (_, false) => v,
+        };
+        let profile = between(chain, map.value(from), map.value(to), tolerance).ok()?.to_curve().ok()?;
+        Some((profile, sweep.path()))
+    }
+
+    /// The plane of a flat surface.
+    fn flat_form(&self) -> Elementary {
+        let jet = self.jet(0.0, 0.0);
+        let normal = jet.du.cross(jet.dv).normalize_or_zero();
+        Elementary { form: Form::Plane { at: jet.p, normal }, reference: jet.du.normalize_or_zero(), along: true }
+    }
+
+    /// Values of v where two pieces of the profile of an extruded or revolved surface meet, at least one of them a line or an arc of a
+    /// circle, ascending: between them it may have exact forms that it does not have as a whole. None of a trimmed surface.
+    pub fn form_joints(&self, tolerance: &Tolerance) -> Vec<f64> {
+        let parts = self.parts();
+        let (Shape::Sweep(sweep), Domain::Square) = (&parts.shape, self.domain()) else { return Vec::new() };
+        let Rail::Chain { chain, map, .. } = sweep.profile() else { return Vec::new() };
+        let Ok(profile) = chain.to_curve() else { return Vec::new() };
+        let Some(row) = profile.composite() else { return Vec::new() };
+        let is_simple = |piece: &Curve| matches!(piece.shape(), CurveShape::Line(..)) || round(piece).is_some();
+        let joints = (1..row.pieces.len()).filter(|k| is_simple(&row.pieces[k - 1]) || is_simple(&row.pieces[*k]));
+        let value = |k: usize| map.inverse(row.starts()[k] / profile.length());
+        let mut values: Vec<f64> = joints.map(|k| if parts.flipped { 1.0 - value(k) } else { value(k) }).collect();
+        values.retain(|v| *v > tolerance.parameter && *v < 1.0 - tolerance.parameter);
+        values.sort_by(f64::total_cmp);
+        values
+    }
+}
+
+impl Surface {
+    /// Whether it has an exact form, or parts with such between [`Surface::form_joints`].
+    pub fn has_forms(&self, tolerance: &Tolerance) -> bool {
+        if self.domain() == Domain::Unbounded {
+            return false;
+        }
+        let stops = [&[0.0][..], &self.form_joints(tolerance), &[1.0]].concat();
+        stops.windows(2).all(|w| self.elementary((w[0], w[1]), tolerance).is_some())
     }
 }
 

@@ -25,7 +25,11 @@ pub fn sheet(things: &[IgesThing], scale: &IgesScale) -> Result<IgesFile, String
             IgesShape::Point(p) => Ok(builder.sheet.add(116, 0, Role::Free, EntityValues::new().point(*p / scale.model).int(0))),
             IgesShape::Curve(chain) => chain.to_curve().map_err(Defect::from).and_then(|curve| builder.curve(&curve, Role::Free, true)),
             IgesShape::Surface(surface) => builder.surface(surface),
-            IgesShape::Faces(faces) => builder.bodies(thing, faces),
+            IgesShape::Faces(faces) => faces.bodies(&scale.tolerance).and_then(|bodies| builder.bodies(thing, &bodies)),
+            IgesShape::Face(faces, surface) => match faces.bodies(&scale.tolerance) {
+                Ok(bodies) => builder.bodies(thing, &bodies),
+                Err(_) => builder.surface(surface),
+            },
         };
         let d = made.map_err(|Defect(why)| if thing.name.is_empty() { why } else { format!("`{}`: {why}", thing.name) })?;
         if !thing.name.is_empty() {

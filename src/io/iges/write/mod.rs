@@ -7,7 +7,8 @@
 //! | arc of a circle | 100, placed by a 124 unless it runs counter-clockwise about z |
 //! | any other curve | 126 |
 //! | curves in a row | 102 |
-//! | surface | 128 |
+//! | surface of exact forms (plane, cylinder, cone, sphere, torus) | 514 form 2 |
+//! | any other surface | 128 |
 //! | surface inside loops | 144, 142 over a 128 |
 //! | closed shell | 186, its faces share edges: 514, 510, 508, 504, 502 |
 //! | open shell | 514 form 2 |

@@ -13,7 +13,7 @@ use crate::base::job;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::closest;
 use crate::geometry::{Closest, Curve};
-use crate::io::cad::bodies::{Bodies, Faces};
+use crate::io::cad::bodies::Bodies;
 use crate::io::cad::control_nets::{NetBorder, borders};
 use crate::io::cad::defect::{Defect, defect};
 use crate::io::cad::elementary_surface::Ground;
@@ -49,8 +49,7 @@ struct Ends {
 
 impl FileBuilder<'_> {
     /// The bodies of a thing; several are a group.
-    pub(super) fn bodies(&mut self, thing: &IgesThing, faces: &Faces) -> Result<u32, Defect> {
-        let bodies = faces.bodies(&self.scale.tolerance)?;
+    pub(super) fn bodies(&mut self, thing: &IgesThing, bodies: &Bodies) -> Result<u32, Defect> {
         self.off = self.off.max(bodies.off.0);
         self.sampled |= bodies.off.1;
         self.left_out.extend(bodies.left_out(&thing.name));
@@ -59,17 +58,17 @@ impl FileBuilder<'_> {
         let mut made = Vec::with_capacity(n);
         for solid in &solids {
             let skins: Vec<usize> = std::iter::once(solid.outer).chain(solid.voids.iter().copied()).collect();
-            let shells = self.shells(&bodies, &skins, Role::ShellOfSolid)?;
+            let shells = self.shells(bodies, &skins, Role::ShellOfSolid)?;
             let values = EntityValues::new().int(shells[0]).int(1).int(shells.len() as u32 - 1);
             // Faces of cavities look into them, out of the material.
             let values = shells[1..].iter().fold(values, |values, void| values.int(*void).int(1));
             let solid = self.sheet.add(186, 0, Role::Body, values);
-            self.paint_body(solid, &bodies, &skins);
+            self.paint_body(solid, bodies, &skins);
             made.push(solid);
         }
         for sheet in sheets {
-            let shell = self.shells(&bodies, &[sheet], Role::Body)?[0];
-            self.paint_body(shell, &bodies, &[sheet]);
+            let shell = self.shells(bodies, &[sheet], Role::Body)?[0];
+            self.paint_body(shell, bodies, &[sheet]);
             made.push(shell);
         }
         let [one] = made[..] else {

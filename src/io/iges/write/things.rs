@@ -18,6 +18,8 @@ pub enum IgesShape {
     Surface(Surface),
     /// Faces that share their edges: a solid where they close.
     Faces(Box<Faces>),
+    /// The same for a surface by itself, which goes out as that where its edges do not close.
+    Face(Box<Faces>, Surface),
 }
 
 /// Things with their names; those under one group name become a group.
@@ -38,7 +40,11 @@ pub struct IgesThing {
 impl IgesThing {
     /// Layers that it or a face of it is on.
     pub(super) fn all_layers(&self) -> impl Iterator<Item = &str> {
-        let faces = if let IgesShape::Faces(faces) = &self.shown { Some(faces.layers.values().flatten()) } else { None };
+        let faces = if let IgesShape::Faces(faces) | IgesShape::Face(faces, _) = &self.shown {
+            Some(faces.layers.values().flatten())
+        } else {
+            None
+        };
         self.layers.iter().chain(faces.into_iter().flatten()).map(String::as_str)
     }
 }

@@ -1,8 +1,11 @@
 //! Curves as STEP entities: lines, circles and B-splines.
 
+use std::f64::consts::TAU;
+
 use glam::DVec3;
 
 use crate::base::fault::Result;
+use crate::base::math::atan2;
 use crate::geometry::curves::curve::Shape;
 use crate::geometry::shapes::arc::EllipticArc;
 use crate::geometry::{Curve, Nurbs};
@@ -92,6 +95,37 @@ fn circle(records: &mut SectionRecords, arc: &EllipticArc, name: &str, scale: &S
     })
 }
 
+/// A conic between two of its angles.
+fn trimmed(records: &mut SectionRecords, basis: Id, (from, to): (f64, f64), name: &str) -> Id {
+    let end = |v: &mut RecordValues, at: f64| {
+        v.list(|v| {
+            v.typed("PARAMETER_VALUE", at);
+        });
+    };
+    records.put("TRIMMED_CURVE", |v| {
+        end(v.text(name).id(basis), from);
+        end(v, to);
+        v.flag(true).word(".PARAMETER.");
+    })
+}
+
+/// An arc of a circle or an ellipse.
+pub fn arc_of(records: &mut SectionRecords, arc: &EllipticArc, scale: &StepScale) -> Id {
+    if arc.radius.is_some() {
+        let basis = circle(records, arc, "", scale);
+        return trimmed(records, basis, (0.0, arc.sweep), "");
+    }
+    // From the first point to the end of the longer axis.
+    let first = 0.5 * atan2(2.0 * arc.u.dot(arc.v), arc.u.length_squared() - arc.v.length_squared());
+    let axes = arc.part(first, first + arc.sweep);
+    let frame = records.frame(arc.center / scale.model, axes.u.cross(axes.v).normalize_or_zero(), axes.u.normalize_or_zero());
+    let basis = records.put("ELLIPSE", |v| {
+        v.text("").id(frame).real(axes.u.length() / scale.model).real(axes.v.length() / scale.model);
+    });
+    let from = (-first).rem_euclid(TAU);
+    trimmed(records, basis, (from, from + arc.sweep), "")
+}
+
 /// A curve with its ends, under a name.
 pub fn bounded(records: &mut SectionRecords, curve: &Curve, name: &str, scale: &StepScale) -> Result<Id> {
     if let Some(points) = corners(curve) {
@@ -114,19 +148,10 @@ pub fn bounded(records: &mut SectionRecords, curve: &Curve, name: &str, scale: &
                 v.text(name).ids(&segments).word(".U.");
             }))
         }
-        Shape::Arc(arc) if arc.radius.is_some() && arc.sweep >= std::f64::consts::TAU => Ok(circle(records, arc, name, scale)),
+        Shape::Arc(arc) if arc.radius.is_some() && arc.sweep >= TAU => Ok(circle(records, arc, name, scale)),
         Shape::Arc(arc) if arc.radius.is_some() => {
             let basis = circle(records, arc, "", scale);
-            let end = |v: &mut RecordValues, at: f64| {
-                v.list(|v| {
-                    v.typed("PARAMETER_VALUE", at);
-                });
-            };
-            Ok(records.put("TRIMMED_CURVE", |v| {
-                end(v.text(name).id(basis), 0.0);
-                end(v, arc.sweep);
-                v.flag(true).word(".PARAMETER.");
-            }))
+            Ok(trimmed(records, basis, (0.0, arc.sweep), name))
         }
         _ => Ok(spline(records, &curve.to_nurbs(&scale.tolerance)?, name, scale)),
     }

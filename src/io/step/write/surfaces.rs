@@ -4,17 +4,43 @@ use glam::DVec3;
 
 use crate::geometry::shapes::nurbs::projected;
 use crate::io::cad::elementary_surface::Ground;
-use crate::io::step::write::curves::knots;
+use crate::io::step::write::curves::{arc_of, knots};
 use crate::io::step::write::records::{Id, RecordValues, SectionRecords};
 use crate::io::step::write::things::StepScale;
 use crate::surface::NurbsSurface;
-use crate::surface::analysis::elementary::{Elementary, Form};
+use crate::surface::analysis::elementary::{Elementary, Form, MovedArc};
+use crate::surface::shapes::sweep::Path;
 
 /// Writes the surface.
 pub fn put(records: &mut SectionRecords, ground: &Ground, scale: &StepScale) -> Id {
     match ground {
         Ground::Net(net, ..) => spline(records, net, scale),
         Ground::Elementary(found) => elementary(records, found, scale),
+    }
+}
+
+/// Writes an arc that is moved or turned.
+pub fn moved(records: &mut SectionRecords, arc: &MovedArc, scale: &StepScale) -> Id {
+    let profile = arc_of(records, &arc.profile, scale);
+    match arc.path {
+        Path::Straight { by } => {
+            let way = records.direction(by.normalize_or_zero());
+            let vector = records.put("VECTOR", |v| {
+                v.text("").id(way).real(by.length() / scale.model);
+            });
+            records.put("SURFACE_OF_LINEAR_EXTRUSION", |v| {
+                v.text("").id(profile).id(vector);
+            })
+        }
+        Path::Turn { about, axis, .. } => {
+            let (at, way) = (records.point(about / scale.model), records.direction(axis));
+            let place = records.put("AXIS1_PLACEMENT", |v| {
+                v.text("").id(at).id(way);
+            });
+            records.put("SURFACE_OF_REVOLUTION", |v| {
+                v.text("").id(profile).id(place);
+            })
+        }
     }
 }
 

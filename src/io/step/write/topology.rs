@@ -97,7 +97,12 @@ struct Writer<'b> {
 impl Writer<'_> {
     /// All faces, in the order of the body.
     fn faces(&mut self, records: &mut SectionRecords) -> Result<Vec<Id>, Defect> {
-        self.surfaces = self.bodies.grounds.iter().map(|ground| surfaces::put(records, ground, self.scale)).collect();
+        self.surfaces = (0..self.bodies.grounds.len())
+            .map(|k| match &self.bodies.arcs[k] {
+                Some(arc) => surfaces::moved(records, arc, self.scale),
+                None => surfaces::put(records, &self.bodies.grounds[k], self.scale),
+            })
+            .collect();
         self.edges = self.all_edges(records)?;
         let mut made = Vec::with_capacity(self.bodies.grounds.len());
         for k in 0..self.bodies.grounds.len() {
