@@ -372,3 +372,13 @@ check "names": len(box_step.faces) == 10 and area(box_step["wall_8"]) == area(bo
 "#;
     run("rows_back", &format!("units mm\n{back}{checks}"));
 }
+
+/// No inner knot stands as often as the degree where the curve has no corner: other programs cut curves there.
+#[test]
+fn smooth_curves_have_no_knots_like_corners() {
+    let files =
+        run("smooth", "units mm\ncurve h = helix(center: (0, 0, 0), start: (20, 0, 0), pitch: 10mm, turns: 3)\nexport h to \"h.step\"\n");
+    let (_, curve) = of_type(&records(&files["h.step"]), "B_SPLINE_CURVE_WITH_KNOTS")[0];
+    let times = curve.split("(4,").nth(1).unwrap().split(",4)").next().unwrap();
+    assert!(times.split(',').all(|k| k == "2") && times.len() > 100, "{times}");
+}

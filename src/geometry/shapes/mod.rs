@@ -6,3 +6,4 @@ pub mod helix;
 pub mod least_squares;
 pub mod nurbs;
 pub mod nurbs_edit;
+mod nurbs_lean;

@@ -32,6 +32,8 @@ impl FileBuilder<'_> {
             }
             _ => {
                 let nurbs = curve.to_nurbs(&self.scale.tolerance)?;
+                // What is in (u, v) is as large as the numbers there.
+                let nurbs = if scaled { nurbs.lean(self.scale.tolerance.rounding) } else { nurbs };
                 Ok(self.sheet.add(126, 0, role, spline(&nurbs, scale)))
             }
         }

@@ -35,7 +35,8 @@ impl Along {
                 let curve = curve.to_nurbs(&scale.tolerance)?;
                 let ((a, b), n) = (curve.domain(), curve.knots.len());
                 let is_full = curve.knots[0] == a && curve.knots[n - 1] == b;
-                Ok(Self::Spline(if is_full { curve } else { curve.part(a, b) }))
+                let curve = if is_full { curve } else { curve.part(a, b) };
+                Ok(Self::Spline(curve.lean(scale.tolerance.rounding)))
             }
         }
     }
@@ -153,7 +154,7 @@ pub fn bounded(records: &mut SectionRecords, curve: &Curve, name: &str, scale: &
             let basis = circle(records, arc, "", scale);
             Ok(trimmed(records, basis, (0.0, arc.sweep), name))
         }
-        _ => Ok(spline(records, &curve.to_nurbs(&scale.tolerance)?, name, scale)),
+        _ => Ok(spline(records, &curve.to_nurbs(&scale.tolerance)?.lean(scale.tolerance.rounding), name, scale)),
     }
 }
 
