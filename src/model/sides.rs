@@ -1,6 +1,6 @@
 //! Which side of each face a skin shows: faces at an edge use it in opposite senses, and what closes points outwards.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::glue::root;
 use super::shells::Joins;
@@ -99,13 +99,15 @@ fn spread(first: SurfaceId, neighbours: &[Vec<(SurfaceId, bool, usize)>], sides:
 }
 
 impl Model {
-    /// Faces of a list with the sides that they show together: those that close to a skin point out of what they enclose, out of
-    /// the material where one skin lies inside another; all others stay as they are. Borders up to `near` apart are one edge.
+    /// Faces of a list with the sides that they show together: those that close to a skin point out of what they enclose, out of the
+    /// material where one skin lies inside another one; all others stay as they are, but for open ones of `unsewn` faces alone: these show
+    /// one side, that of most of them. Borders up to `near` apart are one edge.
     ///
     /// Fails with E413 where it cannot be told whether one skin lies inside another one.
     pub fn outward(
         &self,
         listed: &[(SurfaceId, bool)],
+        unsewn: &BTreeSet<SurfaceId>,
         near: f64,
         network: &Network,
         tolerance: &Tolerance,
@@ -114,9 +116,18 @@ impl Model {
         let sewn = self.sewn_over(&members, near, network, tolerance);
         let whole: Vec<SurfaceId> = members.iter().copied().filter(|s| !self.is_thin(*s, &sewn.slivers)).collect();
         let mut components = components(&whole, &sewn.usages);
-        components.retain(|c| c.closed && c.one_sided.is_none());
-        self.turn_outwards(&mut components, tolerance)?;
-        let sides: BTreeMap<SurfaceId, bool> = components.into_iter().flat_map(|c| c.faces).collect();
+        components.retain(|c| c.one_sided.is_none());
+        let (mut closed, mut open): (Vec<Component>, Vec<Component>) = components.into_iter().partition(|c| c.closed);
+        self.turn_outwards(&mut closed, tolerance)?;
+        open.retain(|c| c.faces.iter().all(|(surface, _)| unsewn.contains(surface)));
+        let given: BTreeMap<SurfaceId, bool> = listed.iter().copied().collect();
+        for faces in open.iter_mut().map(|c| &mut c.faces) {
+            let against = faces.iter().filter(|(surface, other)| given.get(surface) != Some(other)).count();
+            if 2 * against > faces.len() {
+                faces.iter_mut().for_each(|(_, other)| *other = !*other);
+            }
+        }
+        let sides: BTreeMap<SurfaceId, bool> = closed.into_iter().chain(open).flat_map(|c| c.faces).collect();
         Ok(listed.iter().map(|(surface, own)| (*surface, sides.get(surface).copied().unwrap_or(*own))).collect())
     }
 }

@@ -31,6 +31,8 @@ struct Finder<'s> {
 pub struct Faces {
     /// Those of no closed shell, with `true` where the other side was given.
     loose: Vec<(SurfaceId, bool)>,
+    /// Those that a file does not keep together.
+    unsewn: BTreeSet<SurfaceId>,
     /// Those of closed shells.
     closed: BTreeSet<SurfaceId>,
     /// What asks a shell among them to join faces that touch.
@@ -60,12 +62,21 @@ impl Faces {
             self.closed.extend(built.surfaces.iter().map(|s| s.0));
         } else {
             self.loose.extend(&built.surfaces);
+            if shell.body.is_some() {
+                self.unsewn.extend(built.surfaces.iter().map(|s| s.0));
+            }
         }
         plan.surfaces.extend(&built.surfaces);
     }
 
+    /// Adds a face of a file.
+    pub fn add_unsewn(&mut self, plan: &mut Plan, found: &[(SurfaceId, bool)]) {
+        self.unsewn.extend(found.iter().filter(|(_, turned)| !turned).map(|(surface, _)| *surface));
+        self.add_surfaces(plan, found);
+    }
+
     /// Puts each face into the plan once, glues those by themselves as a shell of them would be, and gives faces that are of no closed
-    /// shell the sides of the shell that they would make; `flip` turns all.
+    /// shell the sides of the shell that they would make, those of a file also where it is open; `flip` turns all.
     pub fn settle(&self, plan: &mut Plan, scene: &Scene, flip: bool, tolerance: &Tolerance) -> Result<(), Fault> {
         // A face of several shells, or one that is listed again, is there once.
         let mut listed = BTreeSet::new();
@@ -76,7 +87,8 @@ impl Faces {
         let mut loose = self.loose.clone();
         loose.retain(|(s, _)| !self.closed.contains(s));
         let near = loose.iter().filter_map(|(s, _)| plan.glue.get(s)).fold(near, |near, own| near.max(*own));
-        let sides: BTreeMap<SurfaceId, bool> = scene.model.outward(&loose, near, &scene.network, tolerance)?.into_iter().collect();
+        let sides: BTreeMap<SurfaceId, bool> =
+            scene.model.outward(&loose, &self.unsewn, near, &scene.network, tolerance)?.into_iter().collect();
         for (surface, other) in &mut plan.surfaces {
             *other = sides.get(surface).copied().unwrap_or(*other) != flip;
         }
@@ -239,7 +251,11 @@ impl Finder<'_> {
         match value {
             Value::Surface(surface) => {
                 let found = self.scene.find_all([surface])?;
-                faces.add_surfaces(plan, &found);
+                if cx.said_of(surface).is_some() {
+                    faces.add_unsewn(plan, &found);
+                } else {
+                    faces.add_surfaces(plan, &found);
+                }
             }
             Value::Shell(shell) => {
                 // Whether it is open was said where the shell is declared.

@@ -126,7 +126,8 @@ impl Scene {
             name: shell.name.to_string(),
             surfaces,
             snap: shell.snap,
-            branches: shell.imprint.is_some(),
+            // What a file calls an open shell is whatever faces stand in it.
+            branches: shell.imprint.is_some() || shell.body == Some(BodyKind::Shell),
             touches: shell.body == Some(BodyKind::Solid),
             origin: shell.origin,
         };

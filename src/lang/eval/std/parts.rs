@@ -54,8 +54,8 @@ fn volumes(cx: &mut Cx, part: &PartValue) -> Result<(f64, DVec3), Halt> {
     if volume > 0.0 { Ok((volume, moment / volume)) } else { Err(nothing()) }
 }
 
-/// Shells of some shells and surfaces: solids and closed ones as they are, and the rest together. Many programs write each face as a shell of
-/// its own, and what closes then are all of them.
+/// Shells of some shells and surfaces: solids as they are, and closed ones where all others are, else the rest together. Many programs write
+/// each face as a shell of its own, and what closes then are all of them: a whole sphere among them may be a cavity.
 fn closed_of(cx: &mut Cx, things: Vec<Value>, (name, origin): (Arc<str>, Origin)) -> Result<Vec<Arc<ShellValue>>, Halt> {
     let module = cx.module();
     let (mut closed, mut open, mut surfaces) = (Vec::new(), Vec::new(), Vec::new());
@@ -69,6 +69,12 @@ fn closed_of(cx: &mut Cx, things: Vec<Value>, (name, origin): (Arc<str>, Origin)
             }
             _ => {}
         }
+    }
+    if !open.is_empty() {
+        let (solids, others): (Vec<_>, Vec<_>) = closed.into_iter().partition(|shell| shell.body != Some(BodyKind::Shell));
+        surfaces.extend(others.iter().flat_map(|shell| shell.surfaces.iter().cloned()));
+        open.extend(others);
+        closed = solids;
     }
     match open.as_slice() {
         [one] if surfaces.len() == one.surfaces.len() => closed.push(one.clone()),
