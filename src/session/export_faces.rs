@@ -1,6 +1,7 @@
 //! Surfaces and shells of a script as the faces that files of solids hold, with their names, colours and layers.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use super::export::Colors;
 use super::plan::surfaces_of;
@@ -19,7 +20,7 @@ pub(super) fn lone(cx: &Cx, scene: &Scene, surface: &Surface, tolerance: &Tolera
     let near = scene.model.reach([id], None, tolerance);
     let shell = Shell { name: String::new(), origin: surface.origin(), surfaces: vec![(id, other)], near, closed: false, free: Vec::new() };
     let colors = colors.of_surface(surface).map(|rgb| (id, rgb)).into_iter().collect();
-    let names = cx.name_in_file(surface).map(|name| (id, name)).into_iter().collect();
+    let names = [(id, face_name(cx, surface))].into();
     let (model, network) = (scene.model.clone(), scene.network.clone());
     Ok(Faces { model, network, shell, solid: false, colors, names, layers: BTreeMap::new() })
 }
@@ -43,13 +44,30 @@ pub(super) fn whole(cx: &Cx, scene: &Scene, shell: &ShellValue, tolerance: &Tole
         let Some((id, _)) = scene.find(surface) else { continue };
         faces.colors.extend(colors.of_surface(surface).map(|rgb| (id, rgb)));
         let Some(said) = cx.said_of(surface) else { continue };
-        faces.names.extend(said.own.as_ref().map(|own| (id, own.to_string())));
+        faces.names.insert(id, said.own.as_deref().unwrap_or_default().to_owned());
         let own: Vec<String> = said.layers.iter().map(|layer| layer.to_string()).filter(|layer| !common.contains(layer)).collect();
         if !own.is_empty() {
             faces.layers.insert(id, own);
         }
     }
     Ok(faces)
+}
+
+/// The name of a surface by itself: as declared; of a face of a file that there, which may be none.
+pub(super) fn face_name(cx: &Cx, surface: &Surface) -> String {
+    match cx.said_of(surface) {
+        Some(said) => said.own.as_deref().unwrap_or_default().to_owned(),
+        None => cx.surface_name(surface),
+    }
+}
+
+/// Names of a shell: as declared; of a body of a file as it stands there, and that of which there is one only, which may be none.
+pub(super) fn body_names(cx: &Cx, shell: &ShellValue) -> [Arc<str>; 2] {
+    match cx.body_said(shell) {
+        Some(names) => names.clone(),
+        None if cx.is_body(shell) => ["", ""].map(Arc::from),
+        None => [&shell.name, &shell.name].map(Arc::clone),
+    }
 }
 
 /// The layers of an imported file that all of some surfaces lie on.

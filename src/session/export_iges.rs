@@ -1,7 +1,7 @@
 //! `export … to "x.igs"`: shells become solids, or trimmed surfaces in a group.
 
 use super::export::{Colors, Written, no_mesh_settings, put, unit_of};
-use super::export_faces::{layers, lone, whole};
+use super::export_faces::{body_names, face_name, layers, lone, whole};
 use super::plan::surfaces_of;
 use crate::base::fault::Say;
 use crate::base::origin::Origin;
@@ -40,7 +40,7 @@ pub(super) fn iges(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<
     };
     let face = |cx: &Cx, surface: &Surface| {
         let thing = one(cx, surface.origin(), IgesShape::Surface(surface.clone()));
-        IgesThing { name: cx.name_in_file(surface).unwrap_or(thing.name), ..thing }
+        IgesThing { name: face_name(cx, surface), ..thing }
     };
     let mut things = Vec::with_capacity(spec.things.len());
     for (value, origin) in &spec.things {
@@ -65,12 +65,12 @@ pub(super) fn iges(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<
             }),
             Value::Shell(shell) => match &scene {
                 Some(scene) if !as_faces => {
-                    let name = cx.body_said(shell).map_or(&shell.name, |[_, only]| only).to_string();
+                    let name = body_names(cx, shell)[1].to_string();
                     let faces = whole(cx, scene, shell, &tolerance, &colors)?;
                     things.push(IgesThing { name, ..one(cx, *origin, IgesShape::Faces(Box::new(faces))) });
                 }
                 _ => {
-                    let group = cx.body_said(shell).map_or(&shell.name, |[_, only]| only);
+                    let [_, group] = body_names(cx, shell);
                     things.extend(shell.surfaces.iter().map(|s| IgesThing { group: group.to_string(), ..face(cx, s) }));
                 }
             },

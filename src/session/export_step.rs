@@ -43,13 +43,13 @@ pub(super) fn step(cx: &mut Cx, spec: &ExportSpec, files: &dyn Files) -> Result<
             }
             Value::Surface(surface) => {
                 let measured = Measured { area: Some(measure::area(surface)), volume: None };
-                let name = cx.name_in_file(surface).unwrap_or_else(|| cx.surface_name(surface));
+                let name = super::export_faces::face_name(cx, surface);
                 (name, StepShape::Faces(Box::new(lone(cx, &scene, surface, &tolerance, &colors)?)), measured)
             }
             Value::Shell(shell) => {
                 let faces = whole(cx, &scene, shell, &tolerance, &colors)?;
                 let measured = measured(&faces);
-                (cx.body_said(shell).map_or(&shell.name, |[own, _]| own).to_string(), StepShape::Faces(Box::new(faces)), measured)
+                (super::export_faces::body_names(cx, shell)[0].to_string(), StepShape::Faces(Box::new(faces)), measured)
             }
             other => {
                 return Err(unsupported(*origin, format!("STEP holds points, curves, surfaces and shells, not {}", other.ty().words())));
@@ -96,10 +96,18 @@ impl Tree {
         if !found.all(|other| other.is_some_and(|(own, place)| Arc::ptr_eq(own, file) && place == node)) {
             return None;
         }
+        // What a script makes of a file without an assembly is a product of its own.
+        if let Value::Shell(shell) = value
+            && !cx.is_body(shell)
+            && file.tree.iter().all(|node| node.parent.is_none())
+        {
+            return None;
+        }
         let known = self.files.iter().find(|(known, _)| Arc::ptr_eq(known, file)).map(|(_, first)| *first);
         let first = known.unwrap_or_else(|| {
             let first = self.nodes.len();
-            let placed = |node: &Node| Node { of: node.of + first, parent: node.parent.map(|parent| parent + first), ..node.clone() };
+            let placed =
+                |node: &Node| Node { of: node.of + first, file: first, parent: node.parent.map(|parent| parent + first), ..node.clone() };
             self.nodes.extend(file.tree.iter().map(placed));
             self.files.push((file.clone(), first));
             first

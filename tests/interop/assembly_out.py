@@ -113,8 +113,24 @@ def alone():
     return made
 
 
+def beside():
+    """Products that stand in no other one."""
+    made = Document()
+    made.part("bracket", parts.box(3, 4, 5), 0, 1, 0)
+    made.part("pin", parts.rod(1, 4))
+    return made
+
+
+def lone():
+    """One product."""
+    made = Document()
+    made.part("bracket", parts.box(3, 4, 5), 0, 1, 0)
+    return made
+
+
 CASES = [("pairs", pairs), ("tower", lambda path: tower().write(path)), ("painted", lambda path: painted().write(path))]
-CASES += [("single places", lambda path: alone().write(path))]
+CASES += [("single places", lambda path: alone().write(path)), ("beside each other", lambda path: beside().write(path))]
+CASES += [("one product", lambda path: lone().write(path))]
 
 
 def tree_of(path):

@@ -11,6 +11,8 @@ pub struct Node {
     pub product: String,
     /// The first node of the same product.
     pub of: usize,
+    /// Which of several files it is from.
+    pub file: usize,
     /// The node that it is a part of, which stands before it.
     pub parent: Option<usize>,
     /// From the frame of the product to that of the model.

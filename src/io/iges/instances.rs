@@ -168,7 +168,7 @@ impl IgesPartBuilder {
         let own = self.named(d);
         let name = own.clone().or_else(|| self.named(placed.of)).unwrap_or_else(|| placed.name.clone());
         let product = if placed.name.is_empty() { self.named(placed.of).unwrap_or_default() } else { placed.name.clone() };
-        self.part.tree.push(Node { name: name.clone(), product, of, parent: self.node, motion: placed.motion.then(&around) });
+        self.part.tree.push(Node { name: name.clone(), product, of, file: 0, parent: self.node, motion: placed.motion.then(&around) });
         self.node = Some(node);
         for (member, motion) in placed.members {
             job::poll();

@@ -59,8 +59,7 @@ pub struct Assembly {
 }
 
 impl Assembly {
-    /// Products at their places with the node of each instance, which may be that of what it is a part of; none where no product
-    /// stands in another one.
+    /// Products at their places with the node of each instance, which may be that of what it is a part of.
     pub fn tree(&self, file: &File) -> (Vec<Node>, Vec<Option<usize>>) {
         let (mut nodes, mut places): (Vec<Node>, Vec<Option<usize>>) = (Vec::new(), Vec::with_capacity(self.instances.len()));
         let mut first: BTreeMap<u32, usize> = BTreeMap::new();
@@ -73,9 +72,9 @@ impl Assembly {
             let of = *first.entry(product).or_insert(nodes.len());
             places.push(Some(nodes.len()));
             let (name, motion) = (instance.name.clone(), instance.motion);
-            nodes.push(Node { name, product: product_name(file, product), of, parent, motion });
+            nodes.push(Node { name, product: product_name(file, product), of, file: 0, parent, motion });
         }
-        if nodes.iter().all(|node| node.parent.is_none()) { (Vec::new(), vec![None; places.len()]) } else { (nodes, places) }
+        (nodes, places)
     }
 
     /// What places an item, from its representation up: that, mapped items, occurrences and products.

@@ -42,6 +42,12 @@ impl Cx<'_> {
         part.file.bodies.get(&*shell.name)
     }
 
+    /// Whether a shell is a body of a file as it came in, under no name of the script.
+    pub fn is_body(&self, shell: &ShellValue) -> bool {
+        let part = shell.surfaces.first().and_then(|face| self.part_of(face));
+        part.is_some_and(|(part, _)| part.bodies.iter().any(|body| body.name == shell.name))
+    }
+
     /// A part, or a body of one, that lacks faces while all others of it are among these surfaces.
     pub fn lacking(&self, surfaces: &[Surface]) -> Option<Arc<PartValue>> {
         let held: BTreeSet<Origin> = surfaces.iter().map(Surface::origin).collect();

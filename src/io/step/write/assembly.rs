@@ -44,18 +44,21 @@ pub struct Occurrence {
 /// Red, green and blue from 0 to 1, and what stands for them.
 pub type Repaint = ([f64; 3], [f64; 3]);
 
-/// The products of things, parts before what they stand in; the last one is all of it, under `name` unless one product of the tree is.
+/// The products of things, parts before what they stand in. The last one is all of it, under `name` unless one product of the tree is;
+/// products of one file that stand in none stay beside each other.
 pub fn products(things: &[StepThing], nodes: &[Node], name: &str, tolerance: &Tolerance) -> Vec<Product> {
     let still = Motion::translation(DVec3::ZERO);
     let all = |things: Vec<usize>| Product { name: name.to_owned(), things, parts: Vec::new(), motion: still, places: Vec::new() };
     let mut holding: Vec<usize> = things.iter().filter_map(|thing| thing.node).collect();
     holding.sort_unstable();
     holding.dedup();
-    if holding.len() < 2 {
+    // A product that is in no other one goes out as that; a part of an assembly goes out by itself.
+    let is_whole = things.iter().all(|thing| thing.node.is_some_and(|k| nodes[k].parent.is_none()));
+    if holding.len() < 2 && !is_whole {
         return vec![all((0..things.len()).collect())];
     }
     let mut tree =
-        Tree { things, nodes, tolerance, own: vec![Vec::new(); nodes.len()], below: vec![Vec::new(); nodes.len()], made: Vec::new() };
+        Tree { things, nodes, tolerance, name, own: vec![Vec::new(); nodes.len()], below: vec![Vec::new(); nodes.len()], made: Vec::new() };
     for (k, thing) in things.iter().enumerate() {
         if let Some(node) = thing.node {
             tree.own[node].push(k);
@@ -77,19 +80,25 @@ pub fn products(things: &[StepThing], nodes: &[Node], name: &str, tolerance: &To
     }
     let loose: Vec<usize> = (0..things.len()).filter(|k| things[*k].node.is_none()).collect();
     let parts: Vec<Occurrence> = roots.iter().map(|root| tree.occurrence(*root, &still)).collect();
-    if roots.len() > 1 || !loose.is_empty() {
+    let of_one_file = roots.windows(2).all(|pair| nodes[pair[0]].file == nodes[pair[1]].file);
+    if !of_one_file || !loose.is_empty() {
         let top = Product { parts, ..all(loose) };
         tree.made.push((usize::MAX, top));
     }
     tree.made.into_iter().map(|(_, product)| product).collect()
 }
 
-/// How often each product stands in the whole.
+/// Whether one product is all of it, the last one.
+pub fn is_one(products: &[Product]) -> bool {
+    let mut inner = vec![false; products.len()];
+    products.iter().flat_map(|product| &product.parts).for_each(|part| inner[part.product] = true);
+    inner.iter().filter(|inner| !**inner).count() == 1
+}
+
+/// How often each product stands in all of it.
 pub fn uses(products: &[Product]) -> Vec<usize> {
-    let mut uses = vec![0; products.len()];
-    if let Some(last) = uses.last_mut() {
-        *last = 1;
-    }
+    let mut uses = vec![1; products.len()];
+    products.iter().flat_map(|product| &product.parts).for_each(|part| uses[part.product] = 0);
     for k in (0..products.len()).rev() {
         for part in &products[k].parts {
             uses[part.product] += uses[k];
@@ -102,6 +111,8 @@ struct Tree<'t> {
     things: &'t [StepThing],
     nodes: &'t [Node],
     tolerance: &'t Tolerance,
+    /// What a whole without a name is called.
+    name: &'t str,
     /// Things of each node by itself.
     own: Vec<Vec<usize>>,
     /// Nodes that stand in each.
@@ -121,7 +132,8 @@ impl Tree<'_> {
         let same = |(of, product): &(usize, Product)| if *of == node.of { self.same(product, k, &parts, &motion) } else { None };
         let known = self.made.iter().enumerate().find_map(|(n, made)| same(made).map(|repaint| (n, repaint)));
         let (product, repaint) = known.unwrap_or_else(|| {
-            let name = if node.product.is_empty() { node.name.clone() } else { node.product.clone() };
+            let given = [&node.product, &node.name].into_iter().find(|name| !name.is_empty());
+            let name = given.map_or_else(|| if node.parent.is_none() { self.name.to_owned() } else { String::new() }, String::clone);
             self.made.push((node.of, Product { name, things: self.own[k].clone(), parts, motion, places: Vec::new() }));
             (self.made.len() - 1, None)
         });

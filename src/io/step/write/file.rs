@@ -65,7 +65,7 @@ pub fn sheet(things: &[StepThing], nodes: &[Node], name: &str, setup: &Setup) ->
     }
     content.painted.append(&mut content.repainted);
     styles::put(&mut records, &content.painted, context);
-    if let Some((whole, _)) = shapes.last() {
+    if let (Some((whole, _)), true) = (shapes.last(), assembly::is_one(&tree)) {
         validation::put(&mut records, things, content.thin_area, whole.shape, context, setup);
     }
     let off = content.off;
