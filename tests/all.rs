@@ -71,6 +71,7 @@ mod sliding_nodes;
 mod spec;
 mod splits;
 mod step;
+mod step_forms;
 mod step_out;
 mod support;
 mod surface;

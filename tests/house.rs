@@ -102,7 +102,7 @@ const OUTSIDE: &[&str] = &["std::fs", "std::env", "std::time", "println!", "epri
 /// Lines a floor may have, tests included; a higher number is a change of its own, with the reason.
 const CEILINGS: &[(&str, usize)] = &[
     ("base", 5_000),
-    ("geometry", 6_550),
+    ("geometry", 6_700),
     ("network", 5_150),
     ("surface", 35_300),
     ("model", 7_400),

@@ -90,6 +90,7 @@ impl Faces {
         let mut curves = faces.curves(&body, &placed, tolerance)?;
         let mut vertices = placed.vertices;
         edge_pieces::part_edges(&mut body, &mut vertices, &mut curves, tolerance);
+        edge_pieces::without_seams(&mut body, &grounds, &mut curves);
         let is_open = |face: &BodyFace| face.loops.is_empty() || face.loops.iter().any(|around| !body.is_closed(around));
         if body.faces.iter().any(is_open) {
             return Err(defect("the edges round one of its faces do not close"));
@@ -207,5 +208,5 @@ impl Bodies<'_> {
 
 /// The name of one of several bodies of a thing.
 pub fn numbered(name: &str, before: usize) -> String {
-    if before == 0 { name.to_owned() } else { format!("{name}_{}", before + 1) }
+    if before == 0 || name.is_empty() { name.to_owned() } else { format!("{name}_{}", before + 1) }
 }

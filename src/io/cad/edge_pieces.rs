@@ -2,10 +2,14 @@
 
 use glam::DVec3;
 
+use crate::base::bbox::Box3;
 use crate::base::tolerance::Tolerance;
 use crate::geometry::Curve;
+use crate::io::cad::elementary_surface::Ground;
 use crate::io::cad::exact_pieces::exact_pieces;
+use crate::model::body::BodyLoop;
 use crate::model::{Body, BodyEdge};
+use crate::surface::analysis::elementary::{Elementary, Form};
 
 /// Parts the edges of a body whose curves have pieces that are lines or arcs of circles: a vertex where two pieces meet, an edge and a
 /// curve a piece. An edge of which a piece would be shorter than the tolerance stays whole.
@@ -42,5 +46,40 @@ pub(super) fn part_edges(body: &mut Body, vertices: &mut Vec<DVec3>, curves: &mu
             if *against { own.rev().collect::<Vec<_>>() } else { own.collect() }
         };
         *around = around.iter().flat_map(part).collect();
+    }
+}
+
+/// Takes seams out of plane faces: where a loop runs along an edge there and back, it becomes two loops, or one round a point. The widest
+/// loop of a face comes first.
+pub(super) fn without_seams(body: &mut Body, grounds: &[Ground], curves: &mut [Option<Curve>]) {
+    let mut uses = vec![0; body.edges.len()];
+    body.faces.iter().flat_map(|face| &face.loops).flatten().for_each(|(edge, _)| uses[*edge] += 1);
+    for (face, ground) in body.faces.iter_mut().zip(grounds) {
+        if !matches!(ground, Ground::Elementary(Elementary { form: Form::Plane { .. }, .. })) {
+            continue;
+        }
+        let mut open = std::mem::take(&mut face.loops);
+        let mut parted = false;
+        while let Some(around) = open.pop() {
+            let back =
+                |k: usize| around[k + 1..].iter().position(|step| step.0 == around[k].0 && step.1 != around[k].1 && uses[step.0] == 2);
+            let Some((first, last)) = (0..around.len()).find_map(|k| Some((k, k + 1 + back(k)?))) else {
+                face.loops.push(around);
+                continue;
+            };
+            curves[around[first].0] = None;
+            parted = true;
+            let between = around[first + 1..last].to_vec();
+            let rest = [&around[last + 1..], &around[..first]].concat();
+            open.extend([between, rest].into_iter().filter(|around| !around.is_empty()));
+        }
+        face.loops.reverse();
+        if parted {
+            let reach = |around: &BodyLoop| {
+                let boxes = around.iter().filter_map(|(edge, _)| curves[*edge].as_ref()).map(Curve::bbox);
+                boxes.fold(Box3::EMPTY, Box3::union).diagonal()
+            };
+            face.loops.sort_by(|a, b| reach(b).total_cmp(&reach(a)));
+        }
     }
 }

@@ -6,43 +6,54 @@ use crate::base::job::Job;
 use crate::base::tolerance::Tolerance;
 use crate::io::cad::bodies::Faces;
 use crate::io::cad::defect::Defect;
+use crate::model::topology::Named;
 use crate::model::{Lines, Model, Shell, SurfaceId};
+use crate::surface::Domain;
 
 impl Faces {
     /// The same faces in a model of their own, in which they are cut, and which of them are; `None` where none is to be cut. Each part
     /// has the name, colour and layers of its face.
     pub(super) fn in_pieces(&self, tolerance: &Tolerance) -> Result<Option<(Self, Vec<SurfaceId>)>, Defect> {
-        let listed = &self.shell.surfaces;
-        let cut = |(k, (id, _)): (usize, &(SurfaceId, bool))| {
-            let v = self.model.surfaces[id.index()].surface.form_joints(tolerance);
-            (!v.is_empty()).then(|| (SurfaceId::at(k), Lines { u: Vec::new(), v }))
-        };
-        let lines: Vec<(SurfaceId, Lines)> = listed.iter().enumerate().filter_map(cut).collect();
-        if lines.is_empty() {
+        let (mut surfaces, mut sides, mut lines): (Vec<Named>, Vec<(SurfaceId, bool)>, Vec<(SurfaceId, Lines)>) = Default::default();
+        let mut place_of: BTreeMap<SurfaceId, Vec<SurfaceId>> = BTreeMap::new();
+        let mut parted = Vec::new();
+        for (id, other) in &self.shell.surfaces {
+            let named = &self.model.surfaces[id.index()];
+            let trimmed = named.surface.in_forms(tolerance);
+            let parts = if trimmed.is_empty() { vec![named.surface.clone()] } else { trimmed };
+            let is_trimmed = parts.len() > 1;
+            for surface in parts {
+                let own = SurfaceId::at(surfaces.len());
+                let v = if surface.domain() == Domain::Square { surface.form_joints(tolerance) } else { Vec::new() };
+                if is_trimmed || !v.is_empty() {
+                    parted.push(own);
+                }
+                lines.extend(Some((own, Lines { u: Vec::new(), v })).filter(|(_, lines)| !lines.v.is_empty()));
+                surfaces.push(Named { surface, ..named.clone() });
+                sides.push((own, *other));
+                place_of.entry(*id).or_default().push(own);
+            }
+        }
+        if parted.is_empty() {
             return Ok(None);
         }
-        let surfaces = listed.iter().map(|(id, _)| self.model.surfaces[id.index()].clone()).collect();
         let model = Model::build_cut(surfaces, &lines, &self.network, tolerance, &Job::default())?;
-        let place_of: BTreeMap<SurfaceId, SurfaceId> = listed.iter().enumerate().map(|(k, (id, _))| (*id, SurfaceId::at(k))).collect();
-        let shell = Shell {
-            surfaces: listed.iter().enumerate().map(|(k, (_, other))| (SurfaceId::at(k), *other)).collect(),
-            free: Vec::new(),
-            ..self.shell.clone()
-        };
         let faces = Self {
             model: model.into(),
             network: self.network.clone(),
-            shell,
+            shell: Shell { surfaces: sides, free: Vec::new(), ..self.shell.clone() },
             solid: self.solid,
             colors: moved(&self.colors, &place_of),
             names: moved(&self.names, &place_of),
             layers: moved(&self.layers, &place_of),
         };
-        Ok(Some((faces, lines.into_iter().map(|line| line.0).collect())))
+        Ok(Some((faces, parted)))
     }
 }
 
-/// What is known of surfaces, by their places in another model.
-fn moved<T: Clone>(of: &BTreeMap<SurfaceId, T>, place_of: &BTreeMap<SurfaceId, SurfaceId>) -> BTreeMap<SurfaceId, T> {
-    of.iter().filter_map(|(id, known)| Some((*place_of.get(id)?, known.clone()))).collect()
+/// What is known of surfaces, by the places of their parts in another model.
+fn moved<T: Clone>(of: &BTreeMap<SurfaceId, T>, place_of: &BTreeMap<SurfaceId, Vec<SurfaceId>>) -> BTreeMap<SurfaceId, T> {
+    let places =
+        |(id, known): (&SurfaceId, &T)| place_of.get(id).into_iter().flatten().map(|own| (*own, known.clone())).collect::<Vec<_>>();
+    of.iter().flat_map(places).collect()
 }

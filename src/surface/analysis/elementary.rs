@@ -2,10 +2,12 @@
 
 use glam::DVec3;
 
-use crate::base::tolerance::{PARALLEL, Tolerance};
+use crate::base::tolerance::{NUDGE, PARALLEL, Tolerance};
 use crate::geometry::Curve;
 use crate::geometry::curves::curve::Shape as CurveShape;
 use crate::geometry::shapes::arc::EllipticArc;
+use crate::network::Chain;
+use crate::surface::analysis::iso_line::IsoLine;
 use crate::surface::core::plane::unmapped;
 use crate::surface::core::shape::Shape;
 use crate::surface::core::surface::Surface;
@@ -14,6 +16,7 @@ use crate::surface::rails::rail::Rail;
 use crate::surface::rails::side::between;
 use crate::surface::shapes::sweep::Path;
 use crate::surface::swept::revolve::Axis;
+use crate::surface::trims::divide::split;
 
 /// An exact form without knots.
 #[derive(Clone, Debug)]
@@ -84,6 +87,7 @@ impl Surface {
                 Some(Elementary { along: found.form.normal_is(jet.p, jet.du.cross(jet.dv)), ..found })
             }
             Shape::Sweep(_) => {
+                let v = self.within_joints(v, tolerance);
                 let (profile, path) = self.moved_profile(v, tolerance)?;
                 let (form, reference) = match path {
                     Path::Straight { by } => extruded(&profile, by),
@@ -111,6 +115,7 @@ pub struct MovedArc {
 impl Surface {
     /// The arc that makes an extruded or revolved surface between two values of v; `None` where that is no single arc.
     pub fn moved_arc(&self, v: (f64, f64), tolerance: &Tolerance) -> Option<MovedArc> {
+        let v = self.within_joints(v, tolerance);
         let (profile, path) = self.moved_profile(v, tolerance)?;
         let CurveShape::Arc(arc) = profile.shape() else { return None };
         let middle = arc.jet(0.5 * arc.sweep);
@@ -128,13 +133,33 @@ impl Surface {
         let parts = self.parts();
         let Shape::Sweep(sweep) = &parts.shape else { return None };
         let Rail::Chain { chain, map, .. } = sweep.profile() else { return None };
-        let (from, to) = match (self.domain(), parts.flipped) {
-            (Domain::Loop, _) => (0.0, 1.0),
-            (_, true) => (1.0 - v.1, 1.0 - v.0),
-            (_, false) => v,
-        };
+        let (from, to) = if parts.flipped { (1.0 - v.1, 1.0 - v.0) } else { v };
         let profile = between(chain, map.value(from), map.value(to), tolerance).ok()?.to_curve().ok()?;
         Some((profile, sweep.path()))
+    }
+
+    /// The values of v between two [`Surface::form_joints`] that hold all loops of a trimmed surface, or the whole of it; of any other
+    /// surface those given.
+    fn within_joints(&self, v: (f64, f64), tolerance: &Tolerance) -> (f64, f64) {
+        if self.domain() != Domain::Loop {
+            return v;
+        }
+        let joints = self.form_joints(tolerance);
+        if joints.is_empty() {
+            return (0.0, 1.0);
+        }
+        let Some((low, high)) = self.reach_of_loops() else { return (0.0, 1.0) };
+        let stops = [&[0.0][..], &joints, &[1.0]].concat();
+        let holds = |w: &[f64]| w[0] <= low + NUDGE && high - NUDGE <= w[1];
+        stops.windows(2).find(|w| holds(w)).map_or((0.0, 1.0), |w| (w[0], w[1]))
+    }
+
+    /// Least and largest v of the loops of a trimmed surface, moved by whole turns to where they begin at 0 or above.
+    fn reach_of_loops(&self) -> Option<(f64, f64)> {
+        let places = || self.outlines().into_iter().flatten().map(|place| place.y);
+        let (low, high) = places().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), y| (low.min(y), high.max(y)));
+        let turns = if self.closed().1 { (low + NUDGE).floor() } else { 0.0 };
+        (low <= high).then_some((low - turns, high - turns))
     }
 
     /// The plane of a flat surface.
@@ -145,10 +170,10 @@ impl Surface {
     }
 
     /// Values of v where two pieces of the profile of an extruded or revolved surface meet, at least one of them a line or an arc of a
-    /// circle, ascending: between them it may have exact forms that it does not have as a whole. None of a trimmed surface.
+    /// circle, ascending: between them it may have exact forms that it does not have as a whole.
     pub fn form_joints(&self, tolerance: &Tolerance) -> Vec<f64> {
         let parts = self.parts();
-        let (Shape::Sweep(sweep), Domain::Square) = (&parts.shape, self.domain()) else { return Vec::new() };
+        let Shape::Sweep(sweep) = &parts.shape else { return Vec::new() };
         let Rail::Chain { chain, map, .. } = sweep.profile() else { return Vec::new() };
         let Ok(profile) = chain.to_curve() else { return Vec::new() };
         let Some(row) = profile.composite() else { return Vec::new() };
@@ -165,11 +190,34 @@ impl Surface {
 impl Surface {
     /// Whether it has an exact form, or parts with such between [`Surface::form_joints`].
     pub fn has_forms(&self, tolerance: &Tolerance) -> bool {
-        if self.domain() == Domain::Unbounded {
-            return false;
+        match self.domain() {
+            Domain::Unbounded => false,
+            Domain::Square => {
+                let stops = [&[0.0][..], &self.form_joints(tolerance), &[1.0]].concat();
+                stops.windows(2).all(|w| self.elementary((w[0], w[1]), tolerance).is_some())
+            }
+            _ => self.elementary((0.0, 1.0), tolerance).is_some(),
         }
-        let stops = [&[0.0][..], &self.form_joints(tolerance), &[1.0]].concat();
-        stops.windows(2).all(|w| self.elementary((w[0], w[1]), tolerance).is_some())
+    }
+
+    /// The parts into which lines along [`Surface::form_joints`] divide a trimmed surface; none where there is one only.
+    pub fn in_forms(&self, tolerance: &Tolerance) -> Vec<Self> {
+        let mut stops = if self.domain() == Domain::Loop { self.form_joints(tolerance) } else { Vec::new() };
+        if stops.is_empty() {
+            return Vec::new();
+        }
+        let Some((low, high)) = self.reach_of_loops() else { return Vec::new() };
+        if self.closed().1 {
+            let again: Vec<f64> = stops.iter().map(|v| v + 1.0).collect();
+            stops = [&stops[..], &[1.0], &again].concat();
+        }
+        let is_round = self.closed().1 && high - low >= 1.0 - NUDGE;
+        stops.retain(|v| if is_round { *v <= 1.0 } else { *v > low + NUDGE && *v < high - NUDGE });
+        let ground = self.untrimmed();
+        let line = |v: &f64| ground.iso(IsoLine::V(v.fract()), self.origin(), tolerance).ok().flatten().map(|line| Chain::of_curve(&line));
+        let cutters: Option<Vec<Chain>> = stops.iter().map(line).collect();
+        let parts = cutters.filter(|cutters| !cutters.is_empty()).and_then(|cutters| split(self, &cutters, self.origin(), tolerance).ok());
+        parts.filter(|parts| parts.len() > 1).unwrap_or_default()
     }
 }
 
