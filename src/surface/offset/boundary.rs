@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3};
 use crate::base::fault::Result;
 use crate::base::job;
 use crate::base::origin::Origin;
-use crate::base::tolerance::{BESIDE, NUDGE, PARALLEL, Tolerance};
+use crate::base::tolerance::{NUDGE, PARALLEL, Tolerance};
 use crate::geometry::Nurbs;
 use crate::geometry::data::fault::CurveFault;
 use crate::network::Chain;
@@ -81,10 +81,10 @@ pub(crate) fn whole(surface: &Surface, tolerance: &Tolerance) -> Surface {
 pub(crate) fn boundaries(surface: &Surface, trim_loops: &[TrimLoop], tolerance: &Tolerance) -> Vec<Vec<Option<Boundary>>> {
     let below = whole(surface, tolerance);
     let each = |trim_loop: &TrimLoop| {
-        let seams = seams(surface, &below, trim_loop);
+        let twins = trim_loop.twins(surface);
         let one = |k: usize| {
             let pole = matches!(trim_loop.borders[k].side, Side::Pole(_));
-            (!pole && !seams[k]).then(|| Boundary::of(&below, trim_loop, k))
+            (!pole && twins[k].is_none()).then(|| Boundary::of(&below, trim_loop, k))
         };
         (0..trim_loop.borders.len()).map(one).collect()
     };
@@ -93,31 +93,15 @@ pub(crate) fn boundaries(surface: &Surface, trim_loops: &[TrimLoop], tolerance: 
 
 /// The chains of the borders of a face; neither poles nor seams, across which the face goes on.
 pub(crate) fn border_chains(surface: &Surface, tolerance: &Tolerance) -> Result<Vec<Chain>> {
-    let below = whole(surface, tolerance);
     let mut all = Vec::new();
     for trim_loop in natural(surface, tolerance)? {
-        let seams = seams(surface, &below, &trim_loop);
-        let chain = |(border, seam): (&Border, bool)| match &border.side {
-            Side::Chain { chain, .. } if !seam => Some(chain.clone()),
+        let chain = |(border, twin): (&Border, Option<usize>)| match &border.side {
+            Side::Chain { chain, .. } if twin.is_none() => Some(chain.clone()),
             _ => None,
         };
-        all.extend(trim_loop.borders.iter().zip(seams).filter_map(chain));
+        all.extend(trim_loop.borders.iter().zip(trim_loop.twins(surface)).filter_map(chain));
     }
     Ok(all)
-}
-
-/// Which borders of a loop are seams across which the face goes on: its loop runs along both sides of them.
-fn seams(surface: &Surface, below: &Surface, trim_loop: &TrimLoop) -> Vec<bool> {
-    let closed = surface.closed();
-    let on_seam = |k: usize| !matches!(trim_loop.borders[k].side, Side::Pole(_)) && trim_loop.trim_curves[k].is_seam(closed);
-    let middle = |k: usize| Boundary::of(below, trim_loop, k).jet(0.5, false).map(|jet| jet.p);
-    let near = |j: usize, k: usize| {
-        let apart = middle(j).zip(middle(k)).map(|(a, b)| a.distance(b));
-        apart.is_some_and(|apart| apart <= BESIDE * surface.hull().diagonal())
-    };
-    let n = trim_loop.borders.len();
-    let partner = |k: usize| (0..n).any(|j| j != k && on_seam(j) && near(j, k));
-    (0..n).map(|k| on_seam(k) && (matches!(trim_loop.borders[k].side, Side::Seam) || partner(k))).collect()
 }
 
 impl Boundary {

@@ -48,6 +48,19 @@ impl TrimCurve {
         a.lerp(b, share).distance(p) <= distance
     }
 
+    /// Whether the chords between its places pass a place within a distance in (u, v).
+    pub fn passes(&self, p: DVec2, distance: f64) -> bool {
+        self.places().windows(2).any(|w| Self::Line(w[0].into(), w[1].into()).touches(p, distance))
+    }
+
+    /// About where a share of the way lies.
+    pub fn share(&self, share: f64) -> DVec2 {
+        match self {
+            Self::Line(a, b) => DVec2::from(*a).lerp(DVec2::from(*b), share),
+            Self::Pcurve(pcurve) => pcurve.share(share),
+        }
+    }
+
     /// Whether all of it is a line along which a parameter is whole: the seam of a surface that closes in that direction.
     pub fn is_seam(&self, closed: (bool, bool)) -> bool {
         let places = self.places();

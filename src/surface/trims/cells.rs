@@ -161,10 +161,7 @@ impl<'a> Cells<'a> {
             let places = (1..MAX_SAMPLES).map(|n| pcurve.fraction(n as f64 / MAX_SAMPLES as f64)).map(|f| (own.point(f), pcurve.guess(f)));
             // Where pieces part they are near to each other in any case.
             for (at, uv) in places.filter(|(p, _)| p.distance(piece.p.0).min(p.distance(piece.p.2)) > beside * near) {
-                let passes = |trim_curve: &TrimCurve| {
-                    trim_curve.places().windows(2).any(|w| TrimCurve::Line(w[0].into(), w[1].into()).touches(uv, NEAR))
-                };
-                for other in (0..self.pieces.len()).filter(|other| *other != k && passes(&self.pieces[*other].trim_curve)) {
+                for other in (0..self.pieces.len()).filter(|other| *other != k && self.pieces[*other].trim_curve.passes(uv, NEAR)) {
                     let apart = chain(other).map_or(f64::INFINITY, |chain| chain.closest(at).2);
                     if apart <= near && least.as_ref().is_none_or(|least| apart < least.0) {
                         least = Some((apart, fault(k, other, at, apart)));

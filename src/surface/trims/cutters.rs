@@ -87,12 +87,7 @@ pub(crate) enum Meets {
 pub(crate) fn dividing_curves(base: &Surface, cutters: &[Chain], meets: Meets, tolerance: &Tolerance) -> Result<Vec<DividingCurve>> {
     let mut all = Vec::new();
     for trim_loop in natural(base, tolerance)? {
-        let sides = trim_loop.borders.len();
-        for k in 0..sides {
-            let (border, trim_curve) = (trim_loop.borders[k].clone(), trim_loop.trim_curves[k].clone());
-            let opposite = (sides == 4).then(|| trim_loop.borders[(k + 2) % 4].turned());
-            all.push(of_border(base, border, trim_curve, opposite, tolerance)?);
-        }
+        all.extend(of_loop(base, &trim_loop, tolerance)?);
     }
     for (k, chain) in cutters.iter().enumerate() {
         let curve =
@@ -122,21 +117,25 @@ fn mirror_cuts(all: &mut [DividingCurve], tolerance: &Tolerance) {
     }
 }
 
-pub(crate) fn of_border(
-    base: &Surface,
-    border: Border,
-    trim_curve: TrimCurve,
-    opposite: Option<Border>,
-    tolerance: &Tolerance,
-) -> Result<DividingCurve> {
+/// The borders of a loop of a surface.
+pub(crate) fn of_loop(base: &Surface, trim_loop: &TrimLoop, tolerance: &Tolerance) -> Result<Vec<DividingCurve>> {
+    let each = |(k, twin): (usize, Option<usize>)| {
+        let (border, trim_curve) = (trim_loop.borders[k].clone(), trim_loop.trim_curves[k].clone());
+        of_border(base, border, trim_curve, twin.map(|j| trim_loop.borders[j].turned()), tolerance)
+    };
+    trim_loop.twins(base).into_iter().enumerate().map(each).collect()
+}
+
+/// A border with the other side of the seam that it is.
+fn of_border(base: &Surface, border: Border, trim_curve: TrimCurve, twin: Option<Border>, tolerance: &Tolerance) -> Result<DividingCurve> {
     let along = |side: &Side| match side {
         Side::Chain { chain, from, to } => between(chain, *from, *to, tolerance).map(Some),
         _ => Ok(None),
     };
-    let is_seam = !matches!(border.side, Side::Pole(_)) && trim_curve.is_seam(base.closed());
+    let seam = twin.is_some();
     let mut chain = along(&border.side)?;
-    if chain.is_none() && is_seam {
-        chain = opposite.map(|o| along(&o.side)).transpose()?.flatten();
+    if chain.is_none() {
+        chain = twin.map(|twin| along(&twin.side)).transpose()?.flatten();
     }
     let mut is_drawn = false;
     if chain.is_none()
@@ -147,7 +146,7 @@ pub(crate) fn of_border(
         chain = project(base, &Chain::of_curve(&line), Way::Parameters, base.origin(), tolerance).ok().map(|c| Chain::of_curve(&c));
         is_drawn = true;
     }
-    Ok(DividingCurve { chain, border: Some((border, trim_curve)), seam: is_seam, cutter: None, is_drawn, cuts: Vec::new() })
+    Ok(DividingCurve { chain, border: Some((border, trim_curve)), seam, cutter: None, is_drawn, cuts: Vec::new() })
 }
 
 /// Cuts the curves where cutters meet them and each other.
@@ -287,10 +286,7 @@ impl DividingBorder<'_> {
 
     /// The part between two fractions, along a curve.
     fn part(&self, base: &Surface, run: &Chain, (from, to): (f64, f64), tolerance: &Tolerance) -> Result<Piece> {
-        let about = |f: f64| match self.trim_curve {
-            TrimCurve::Line(a, b) => DVec2::from(*a).lerp(DVec2::from(*b), f),
-            TrimCurve::Pcurve(pcurve) => pcurve.share(f),
-        };
+        let about = |f: f64| self.trim_curve.share(f);
         let p = (run.start(), run.point(MIDDLE), run.end());
         let off = |off: OffSurface| outside(base, run, off, tolerance);
         // From a pole the other end decides on which side of a seam the border runs.

@@ -19,7 +19,7 @@ use crate::surface::core::trim::reach;
 use crate::surface::faults::LoopFault;
 use crate::surface::rails::side::Side;
 use crate::surface::rails::trim_curve::TrimCurve;
-use crate::surface::trims::cutters::of_border;
+use crate::surface::trims::cutters::of_loop;
 use crate::surface::trims::trim_loop::TrimLoop;
 
 /// Meetings nearer to each other than this many tolerances are one.
@@ -49,10 +49,7 @@ impl LoopRing {
     /// A loop that a surface has.
     pub fn of_trim_loop(base: &Surface, trim_loop: &TrimLoop, outer: bool, tolerance: &Tolerance) -> Result<Self> {
         let (mut chains, mut seams) = (Vec::new(), Vec::new());
-        let sides = trim_loop.borders.len();
-        for (k, (border, trim_curve)) in trim_loop.borders.iter().zip(&trim_loop.trim_curves).enumerate() {
-            let opposite = (sides == 4).then(|| trim_loop.borders[(k + 2) % 4].turned());
-            let curve = of_border(base, border.clone(), trim_curve.clone(), opposite, tolerance)?;
+        for curve in of_loop(base, trim_loop, tolerance)? {
             if let Some(chain) = curve.chain {
                 if curve.seam { seams.push(chain) } else { chains.push(chain) }
             }

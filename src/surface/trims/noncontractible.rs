@@ -111,8 +111,8 @@ fn beside(base: &Surface, chains: &[Chain], tolerance: &Tolerance) -> Option<[DV
 fn border_places(base: &Surface, tolerance: &Tolerance) -> Result<Vec<DVec2>> {
     let mut found = Vec::new();
     for trim_loop in natural(base, tolerance)? {
-        for (border, trim_curve) in trim_loop.borders.iter().zip(&trim_loop.trim_curves) {
-            if matches!(border.side, Side::Pole(_)) || trim_curve.is_seam(base.closed()) {
+        for ((border, trim_curve), twin) in trim_loop.borders.iter().zip(&trim_loop.trim_curves).zip(trim_loop.twins(base)) {
+            if matches!(border.side, Side::Pole(_)) || twin.is_some() {
                 continue;
             }
             let places = trim_curve.places();

@@ -6,7 +6,7 @@ use glam::DVec2;
 
 use crate::base::fault::{Fault, Result};
 use crate::base::origin::Origin;
-use crate::base::tolerance::Tolerance;
+use crate::base::tolerance::{NUDGE, Tolerance};
 use crate::network::Chain;
 use crate::surface::closest::nearest::closest;
 use crate::surface::core::surface::{Parts, Surface};
@@ -16,6 +16,9 @@ use crate::surface::faults::{BorderFault, LoopRole};
 use crate::surface::rails::boundary;
 use crate::surface::rails::side::{Border, Side};
 use crate::surface::rails::trim_curve::{Pcurve, TrimCurve};
+
+/// Both sides of a seam are whole turns apart in (u, v) but for so many nudges.
+const TWIN_NUDGES: f64 = 4.0;
 
 /// A closed loop of borders on a surface.
 pub(crate) struct TrimLoop {
@@ -35,6 +38,25 @@ impl TrimLoop {
                 places
             })
             .collect()
+    }
+
+    /// For each border that is one side of a seam across which the face goes on, the border along the other side of it, whole turns
+    /// away in (u, v). A border that runs along a seam of the surface with the face on one side only has none, and poles have none.
+    pub fn twins(&self, base: &Surface) -> Vec<Option<usize>> {
+        let closed = base.closed();
+        let n = self.borders.len();
+        let on_seam = |k: &usize| !matches!(self.borders[*k].side, Side::Pole(_)) && self.trim_curves[*k].is_seam(closed);
+        let seams: Vec<usize> = (0..n).filter(on_seam).collect();
+        if seams.len() < 2 {
+            return vec![None; n];
+        }
+        let twin = |k: usize| {
+            let middle = self.trim_curves[k].share(0.5);
+            let others: Vec<DVec2> = self.copies(base, middle).into_iter().filter(|p| p.distance(middle) > 0.5).collect();
+            let passes = |j: usize| others.iter().any(|p| self.trim_curves[j].passes(*p, TWIN_NUDGES * NUDGE));
+            seams.iter().copied().find(|j| *j != k && passes(*j))
+        };
+        (0..n).map(|k| seams.contains(&k).then(|| twin(k)).flatten()).collect()
     }
 
     /// Twice its signed area in (u, v).
