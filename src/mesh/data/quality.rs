@@ -212,10 +212,23 @@ impl Mesh {
     }
 }
 
-/// Whether a quad has a corner of a half turn or more, or no area.
+/// Sine of a corner of a half turn but for rounding, and the area of a quad without one over the product of its diagonals.
+const STRAIGHT: f64 = 1e-9;
+
+/// Whether a quad has a corner of a half turn or more, or no area, but for rounding.
 pub fn is_concave(p: [DVec3; 4]) -> bool {
     let normal = (p[2] - p[0]).cross(p[3] - p[1]);
-    (0..4).any(|k| (p[(k + 1) % 4] - p[k]).cross(p[(k + 3) % 4] - p[k]).dot(normal) <= 0.0)
+    let is_straight = |k: usize| {
+        let (ahead, back) = (p[(k + 1) % 4] - p[k], p[(k + 3) % 4] - p[k]);
+        ahead.cross(back).dot(normal) <= STRAIGHT * ahead.length() * back.length() * normal.length()
+    };
+    has_no_area(p) || (0..4).any(is_straight)
+}
+
+/// Whether a quad has no area, but for rounding.
+pub fn has_no_area(p: [DVec3; 4]) -> bool {
+    let (a, b) = (p[2] - p[0], p[3] - p[1]);
+    a.cross(b).length() <= STRAIGHT * a.length_squared().max(b.length_squared())
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ mod cavity;
 pub mod collapse;
 mod disk;
 pub mod equalize;
+mod level_face;
 pub mod limit_repair;
 pub mod net;
 pub mod net_check;

@@ -8,9 +8,10 @@ use crate::base::fault::Result;
 use crate::base::job::{self, Job};
 use crate::mesh::chart::halves::{Halves, NONE};
 use crate::mesh::chart::parametric_surface::{ParametricSurface, SizeField, Spot, UniformSize};
-use crate::mesh::data::quality::is_concave;
+use crate::mesh::data::quality::{has_no_area, is_concave};
 use crate::mesh::quad::collapse::collapse;
 use crate::mesh::quad::equalize::Sides;
+use crate::mesh::quad::level_face::LevelFace;
 use crate::mesh::quad::net::{Net, Raw};
 use crate::mesh::quad::odd::whole_sides;
 use crate::mesh::quad::open::open;
@@ -40,6 +41,8 @@ use crate::mesh::tri::triangulation::Triangulation;
 pub(crate) struct NetFit<'a> {
     pub(crate) fit: &'a FaceFit<'a>,
     pub(crate) halves: &'a Halves,
+    /// The plane z = 0 in which it lies instead of its own, if it does.
+    pub(crate) level: Option<&'a LevelFace<'a>>,
 }
 
 /// The largest excess over a limit.
@@ -70,7 +73,9 @@ impl NetFit<'_> {
             let room = if is_strict { 1.0 } else { NET_FIT.max_side_ratio };
             worst = if bend.over > 1.0 && bend.over * room >= side.over { bend } else { side };
             if side.over <= room && bend.over <= 1.0 {
-                if round >= NET_FIT.tries_without_concave || !has_concave(&net) {
+                // What has no area is no element, however often it was tried.
+                let is_sound = !self.fit.surface.is_flat() || !any_quad(&net, has_no_area);
+                if is_sound && (round >= NET_FIT.tries_without_concave || !any_quad(&net, is_concave)) {
                     return Ok(Ok(net));
                 }
                 field.spacing *= FIT.size_factor;
@@ -82,10 +87,11 @@ impl NetFit<'_> {
             }
             job.go_on()?;
         }
+        let at = self.level.map_or(worst.at, |level| level.point(worst.at));
         let setting = plan.limit(worst.limit);
         let reached = worst.over * setting.map_or(self.fit.face.size.0, |s| s.0);
         let (written_at, surface) = (setting.map_or(plan.origin, |s| s.1), self.fit.surface.origin());
-        Err(SizeFault::NotReached { limit: worst.limit, written_at, surface, reached, at: worst.at }.into())
+        Err(SizeFault::NotReached { limit: worst.limit, written_at, surface, reached, at }.into())
     }
 
     /// One net for these lengths from nodes of one placement, with a work budget of its own by its number of elements.
@@ -312,10 +318,10 @@ impl NetFit<'_> {
     }
 }
 
-/// Whether some quad has a corner of a half turn or more.
-fn has_concave(net: &Net) -> bool {
+/// Whether something holds of the corners of some quad.
+fn any_quad(net: &Net, holds: impl Fn([DVec3; 4]) -> bool) -> bool {
     let quads = net.face.iter().filter(|face| face[3] != NONE);
-    job::looking(quads).any(|quad| is_concave(quad.map(|n| net.p[n as usize])))
+    job::looking(quads).any(|quad| holds(quad.map(|n| net.p[n as usize])))
 }
 
 /// The nodes of a net as those of a triangulation, with each quad as two triangles.

@@ -14,7 +14,6 @@ use crate::mesh::request::input::Input;
 use crate::mesh::verify::contact_leaves::Leaves;
 use crate::mesh::verify::contact_reach::bend_of_step;
 use crate::model::SurfaceId;
-use crate::surface::SurfaceKind;
 
 /// A mesh with indices over its faces, segments and nodes.
 pub(crate) struct Scan<'a> {
@@ -41,7 +40,7 @@ impl<'a> Scan<'a> {
     pub(crate) fn new(input: &'a Input<'a>, layout: &'a Layout, nodes: &Nodes, mesh: &'a Mesh) -> Self {
         let leaves = par::map(layout.faces.len(), |f| {
             let surface = &input.model.surfaces[layout.faces[f].surface.index()].surface;
-            let flat = surface.is_flat() || surface.kind() == SurfaceKind::Plane;
+            let flat = surface.is_in_plane();
             Leaves::new(mesh, f, flat, (input.tolerance.point, layout.faces[f].near))
         });
         let boxes: Vec<Box3> = leaves.iter().map(|l| l.hull).collect();

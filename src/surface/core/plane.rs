@@ -28,6 +28,12 @@ pub fn unbounded(at: DVec3, normal: DVec3, origin: Origin) -> Result<Surface> {
     Ok(flat(Shape::Plane(frame), Domain::Unbounded, Vec::new(), String::new(), origin, Vec::new()))
 }
 
+/// The plane z = 0 with u along x and v along y.
+pub fn level(origin: Origin) -> Surface {
+    let frame = Frame { origin: DVec3::ZERO, eu: DVec3::X, ev: DVec3::Y };
+    flat(Shape::Plane(frame), Domain::Unbounded, Vec::new(), String::new(), origin, Vec::new())
+}
+
 /// The square of an unbounded plane that holds whatever of it lies in a box, with room around.
 pub(crate) fn over(surface: &Surface, reach: Box3) -> Surface {
     let parts = surface.parts();

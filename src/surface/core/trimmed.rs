@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use crate::surface::core::shape::Shape;
 use crate::surface::core::surface::{Parts, Surface};
-use crate::surface::data::kind::Domain;
+use crate::surface::data::kind::{Domain, SurfaceKind};
 use crate::surface::rails::side::{Border, Side};
 use crate::surface::rails::trim_curve::TrimCurve;
 
@@ -26,6 +26,11 @@ impl Surface {
     /// Whether it is a plane, trimmed or not, whose parameters are straight and even.
     pub fn is_flat(&self) -> bool {
         matches!(self.parts().shape, Shape::Plane(_))
+    }
+
+    /// Whether all of it lies in a plane, whatever its parameters are.
+    pub fn is_in_plane(&self) -> bool {
+        self.is_flat() || self.kind() == SurfaceKind::Plane
     }
 
     /// Number of sides of each loop, the outer one first; one loop of all sides for what is not trimmed.
