@@ -28,7 +28,7 @@ pub(crate) fn fault(face_input: &FaceInput, face: &Face, border: &FaceBorder, re
         }
         NoMesh::TooManyNodes => {
             let plan = face_input.input.plan;
-            let bent = !face_input.input.model.surfaces[face.surface.index()].surface.is_flat();
+            let bent = !face_input.input.model.surfaces[face.surface.index()].surface.is_in_plane();
             let limit = plan.settings.chord_error.or(plan.settings.angle_error).filter(|_| bent).map(|limit| limit.1);
             let of = limit.unwrap_or_else(|| crate::mesh::size::too_large::of_size(face_input.input, face.size.1));
             crate::mesh::request::work::too_many(plan, of, None)
