@@ -13,6 +13,7 @@
 //! - [`blended`]: Coons and Gordon surfaces, ruled ones, plane faces, skins
 //! - [`swept`]: extrusions, revolutions, sweeps
 //! - [`joined`]: several surfaces as one
+//! - [`filled`]: holes closed
 //! - [`analysis`]: surfaces as nets, their lines, simple forms, reports, validation
 //! - [`intersect`]: with curves, each other and themselves
 //! - [`mod@offset`]: surfaces at a distance, and walls
@@ -24,6 +25,7 @@ pub mod closest;
 pub mod core;
 pub mod data;
 pub mod faults;
+pub mod filled;
 pub mod intersect;
 pub mod joined;
 pub mod offset;
@@ -51,6 +53,7 @@ pub use crate::surface::data::enclosure::Enclosure;
 pub use crate::surface::data::jet::Jet2;
 pub use crate::surface::data::kind::{Domain, SurfaceKind};
 pub use crate::surface::data::one_sided::OneSided;
+pub use crate::surface::filled::fill::{Filling, fill};
 pub use crate::surface::joined::join::join;
 pub use crate::surface::offset::build::offset;
 pub use crate::surface::points::control_net::Net;

@@ -179,6 +179,10 @@ codes! {
     now "N677", "near-its-curves", "a surface deviates from its curves within a limit";
     now "W678", "noise-understated", "points scatter more than was stated";
     now "W679", "point-off", "a point is far off the run of its neighbours";
+    now "E680", "fill-not-beside", "a face to be continued lies along no border of the hole";
+    now "W681", "fill-corner", "faces beside a hole do not agree at a corner";
+    now "W682", "fill-misses", "a fill is off what lies beside it";
+    now "E683", "fill-folds", "the borders of a hole cross as seen from above";
     now "W701", "rule-decides-nothing", "a rule has no effect";
     now "E702", "counts-differ", "counts differ on opposite sides";
     now "E703", "count-too-coarse", "a count is too coarse for a limit";

@@ -26,6 +26,7 @@ pub enum SurfaceKind {
     Blend,
     Scatter,
     Join,
+    Fill,
 }
 
 impl SurfaceKind {
@@ -61,6 +62,7 @@ impl SurfaceKind {
             Self::Blend => "blend",
             Self::Scatter => "scatter",
             Self::Join => "join",
+            Self::Fill => "fill",
         }
     }
 }

@@ -10,6 +10,8 @@ use crate::base::origin::Origin;
 pub enum LoopRole {
     /// The boundary of a plane.
     Plane,
+    /// The borders of a hole that is filled.
+    Fill,
     /// The outer loop of a trimmed surface.
     Outer,
     /// A hole of a trimmed surface, by its place in the list of holes.
@@ -160,7 +162,7 @@ impl Describe for LoopFault {
 /// A loop whose one curve does not close.
 fn open(of: Origin, ends: (DVec3, DVec3), (role, tolerance): (LoopRole, f64), say: &dyn Say) -> Report {
     let what = match role {
-        LoopRole::Plane => "the boundary does not close",
+        LoopRole::Plane | LoopRole::Fill => "the boundary does not close",
         LoopRole::Outer => "the outer loop does not close",
         LoopRole::Hole(_) => "the hole does not close",
     };

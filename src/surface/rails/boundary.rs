@@ -62,6 +62,7 @@ pub(crate) fn once_each(chains: &[Chain], role: LoopRole, tolerance: &Tolerance)
     if let Some(places) = crate::network::given_twice(chains, tolerance) {
         let (argument, hole) = match role {
             LoopRole::Plane => ("curves", None),
+            LoopRole::Fill => ("borders", None),
             LoopRole::Outer => ("outer", None),
             LoopRole::Hole(k) => ("holes", Some(k)),
         };

@@ -12,6 +12,7 @@ pub mod distances;
 pub mod drawings;
 pub mod elementary;
 pub mod fairs;
+pub mod fills;
 pub mod fits;
 pub mod floating;
 pub mod hull_lines;
@@ -124,6 +125,7 @@ pub const BUILTINS: &[&[Builtin]] = &[
     curves::BUILTINS,
     splines::BUILTINS,
     fairs::BUILTINS,
+    fills::BUILTINS,
     fits::BUILTINS,
     hull_lines::BUILTINS,
     offsets_tables::BUILTINS,

@@ -81,6 +81,7 @@ const OTHERS: &[&str] = &[
     "exp",
     "fair",
     "fairness",
+    "fill",
     "fit",
     "flatten",
     "floor",
