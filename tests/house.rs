@@ -36,6 +36,7 @@ const ROOMS: &[(&str, &[&str])] = &[
             "blended",
             "swept",
             "joined",
+            "filled",
             "analysis",
             "intersect",
             "offset",

@@ -137,6 +137,9 @@ impl Meetings<'_> {
     /// A failure of node lists in measurements. Ends that miss by a little are the cause of all that follows from it.
     pub(super) fn explain(&self, fault: FlowFault, hints: &FlowOptions, tolerance: &Tolerance) -> Fault {
         let Self { chains, nodes, lists } = *self;
+        if chains.len() > FLOW_SIDES && is_ring(lists) {
+            return GridFault::FlowUnknown { curves: origins(chains), why: NoFlow::Ring { sides: chains.len() } }.into();
+        }
         if matches!(fault, FlowFault::Incomplete { .. } | FlowFault::Alone { .. } | FlowFault::TooFew { .. })
             && let Some(miss) = ends_that_miss(chains, lists, hints, tolerance)
         {
@@ -172,6 +175,26 @@ impl Meetings<'_> {
             FlowFault::NoPole { node } => return no_pole(chains, nodes[node]),
         }
         .into()
+    }
+}
+
+/// Most sides of a flow.
+const FLOW_SIDES: usize = 4;
+
+/// Whether curves meet at their ends alone, each with one other at either end, and close one loop.
+fn is_ring(lists: &[NodeList]) -> bool {
+    let (mut at, mut here) = (0, lists[0].nodes[0]);
+    let mut met = 0;
+    loop {
+        let [a, b] = lists[at].nodes[..] else { return false };
+        here = if a == here { b } else { a };
+        met += 1;
+        let mut others = (0..lists.len()).filter(|k| *k != at && lists[*k].nodes.contains(&here));
+        match (others.next(), others.next()) {
+            (Some(0), None) => return met == lists.len(),
+            (Some(next), None) if met < lists.len() => at = next,
+            _ => return false,
+        }
     }
 }
 

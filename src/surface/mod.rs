@@ -13,7 +13,7 @@
 //! - [`blended`]: Coons and Gordon surfaces, ruled ones, plane faces, skins
 //! - [`swept`]: extrusions, revolutions, sweeps
 //! - [`joined`]: several surfaces as one
-//! - [`filled`]: holes closed
+//! - [`filled`]: holes of any number of sides closed
 //! - [`analysis`]: surfaces as nets, their lines, simple forms, reports, validation
 //! - [`intersect`]: with curves, each other and themselves
 //! - [`mod@offset`]: surfaces at a distance, and walls

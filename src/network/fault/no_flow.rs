@@ -13,6 +13,11 @@ pub enum NoFlow {
         /// How many were given.
         given: usize,
     },
+    /// They are the sides of one loop, more than four.
+    Ring {
+        /// How many.
+        sides: usize,
+    },
     /// These two meet, so they cannot run the same way, yet every division into two families puts them together.
     NoFamilies {
         /// One curve.
@@ -80,6 +85,13 @@ pub(crate) fn describe(curves: &[Origin], why: &NoFlow, say: &dyn Say) -> Report
         NoFlow::TooFewCurves { given } => Report::new(format!("{given} curve{} cannot span a surface", if *given == 1 { "" } else { "s" }))
             .label(Subject::Call, "needs four borders, or three, or two with common ends")
             .help("coons(south, east, north, west)"),
+        NoFlow::Ring { sides } => {
+            let mut report = Report::new(format!("a loop of {sides} sides: a surface of two families of curves has four, or three"));
+            for curve in curves {
+                report = report.at(*curve, "");
+            }
+            report.help("`fill([a, b, c, …])` closes a hole of any number of sides")
+        }
         NoFlow::NoFamilies { a, b, at } => Report::new(format!(
             "these {} curves do not form two families: {} and {} meet at {} but would run the same way",
             curves.len(),

@@ -67,9 +67,12 @@ impl Describe for FillFault {
             .help("let borders run within the faces that they lie beside, and faces have one tangent plane at a corner; or `order: 0`"),
             Self::Misses { fill, angle, bend } => {
                 let share = format!("{:.1} %", bend * 100.0);
-                Report::new(format!("the surface is up to {} off the tangent planes and {share} off the curvatures beside it", say.angle(*angle)))
-                    .at(*fill, "not as smooth as asked for")
-                    .help("a smaller `order:`, or a hole whose faces bend more evenly, is met better; `connection(a, b)` shows where")
+                Report::new(format!(
+                    "the surface is up to {} off the tangent planes and {share} off the curvatures beside it",
+                    say.angle(*angle)
+                ))
+                .at(*fill, "not as smooth as asked for")
+                .help("a smaller `order:`, or a hole whose faces bend more evenly, is met better; `connection(a, b)` shows where")
             }
             Self::Folds { fill, normal, sides } => {
                 let n = *normal;

@@ -56,7 +56,8 @@ pub struct FaceJet {
 }
 
 impl FaceJet {
-    fn new(jet: &Jet2, plane: &HolePlane) -> Option<Self> {
+    /// Of a jet in space; none where it is singular.
+    pub fn new(jet: &Jet2, plane: &HolePlane) -> Option<Self> {
         let turned = |v: DVec3| plane.turned(v) / plane.scale;
         let jet = Jet2 {
             p: plane.local(jet.p),

@@ -1,6 +1,9 @@
 //! Polynomials of two variables up to a total degree, as products of Chebyshev polynomials over a rectangle.
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
+
+/// Largest degree.
+pub const MOST: usize = 24;
 
 /// The basis of polynomials of two variables.
 #[derive(Clone, Copy, Debug)]
@@ -10,11 +13,15 @@ pub struct Basis {
     degree: usize,
 }
 
-/// Values of one variable: the functions and three derivatives.
-type Line = Vec<[f64; 4]>;
+/// Most derivatives that are taken, and the function itself.
+pub const DERIVATIVES: usize = 7;
+
+/// Values of one variable: the functions and their derivatives.
+type Line = Vec<[f64; DERIVATIVES]>;
 
 fn line(degree: usize, x: f64, rate: f64) -> Line {
-    let mut out: Line = vec![[1.0, 0.0, 0.0, 0.0], [x, 1.0, 0.0, 0.0]];
+    let mut out: Line = vec![[0.0; DERIVATIVES]; 2];
+    (out[0][0], out[1][0], out[1][1]) = (1.0, x, 1.0);
     for k in 2..=degree {
         let (a, b) = (out[k - 1], out[k - 2]);
         out.push(std::array::from_fn(|d| {
@@ -44,6 +51,24 @@ impl Basis {
     /// How many functions.
     pub fn len(&self) -> usize {
         (self.degree + 1) * (self.degree + 2) / 2
+    }
+
+    /// The sum of its functions times some coefficients.
+    pub fn sum(&self, place: DVec2, coefficients: &[DVec3]) -> DVec3 {
+        let q = (place - self.middle) / self.half;
+        let mut values = [[0.0; 2]; MOST + 1];
+        (values[0], values[1]) = ([1.0; 2], [q.x, q.y]);
+        for k in 2..=self.degree {
+            values[k] = [0, 1].map(|a| 2.0 * [q.x, q.y][a] * values[k - 1][a] - values[k - 2][a]);
+        }
+        let (mut sum, mut next) = (DVec3::ZERO, coefficients.iter());
+        for total in 0..=self.degree {
+            for j in 0..=total {
+                let Some(c) = next.next() else { return sum };
+                sum += *c * (values[total - j][0] * values[j][1]);
+            }
+        }
+        sum
     }
 
     /// Its values at a place.

@@ -4,10 +4,11 @@ use glam::{DVec2, DVec3};
 
 use crate::base::job;
 use crate::base::math;
+use crate::surface::filled::beside::Along;
 use crate::surface::filled::chebyshev::Basis;
-use crate::surface::filled::energy::{EnergyWeights, bending, quadrature};
+use crate::surface::filled::energy::{bending, quadrature};
 use crate::surface::filled::householder::Rows;
-use crate::surface::filled::patch::Kite;
+use crate::surface::filled::patch::Patch;
 use crate::surface::filled::ribbon::{BorderPlace, Ribbons};
 
 /// Degrees that are tried, one after the other, until the borders are met.
@@ -27,13 +28,13 @@ const FLAT: f64 = 0.05;
 
 /// How far a surface is from what its borders ask for.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Missed {
+struct Missed {
     /// Largest distance.
-    pub gap: f64,
+    gap: f64,
     /// Largest angle between normals, radians.
-    pub angle: f64,
+    angle: f64,
     /// Largest difference of normal curvatures across a border, as a share.
-    pub bend: f64,
+    bend: f64,
 }
 
 /// A field with its derivatives at a place of the plane.
@@ -78,6 +79,11 @@ impl Field {
         }
     }
 
+    /// The point over a place.
+    pub fn point(&self, place: DVec2) -> DVec3 {
+        place.extend(0.0) + self.basis.sum(place, &self.coefficients)
+    }
+
     /// How far it is from what the borders ask for.
     fn missed(&self, ribbons: &Ribbons, places: &[(DVec2, BorderPlace)]) -> Missed {
         let mut worst = Missed::default();
@@ -98,16 +104,16 @@ impl Field {
     }
 }
 
-/// The field for some borders, through inner points (in the plane's coordinates), and how far it is from what the borders ask for.
-pub fn solved(ribbons: &Ribbons, kites: &[Kite], inner: &[DVec3]) -> (Field, Missed) {
-    let weights = if ribbons.is_held() { EnergyWeights { second: 0.0, third: 1.0 } } else { EnergyWeights { second: 1.0, third: 0.05 } };
+/// The field for some borders, through inner points (in the plane's coordinates).
+pub fn solved(ribbons: &Ribbons, patches: &[Patch], inner: &[DVec3]) -> Field {
+    let weights = weights(ribbons);
     let (asked, between) = (border_places(ribbons, PLACES, 0.0), border_places(ribbons, PLACES, 0.5));
     let outline: Vec<DVec2> = asked.iter().map(|(at, _)| *at).collect();
     let mut best: Option<(Field, Missed)> = None;
     for degree in DEGREES {
         job::poll();
         let basis = Basis::over(&outline, degree);
-        let area = quadrature(ribbons, kites, degree / 2 + 4);
+        let area = quadrature(ribbons, patches, degree / 2 + 4);
         let energy = bending(&basis, &area, &weights);
         let field = through(ribbons, &basis, (&asked, &energy), inner);
         let missed = field.missed(ribbons, &between);
@@ -119,7 +125,17 @@ pub fn solved(ribbons: &Ribbons, kites: &[Kite], inner: &[DVec3]) -> (Field, Mis
             break;
         }
     }
-    best.unwrap_or_else(|| (Field { basis: Basis::over(&outline, 2), coefficients: Vec::new() }, Missed::default()))
+    best.map(|(field, _)| field).unwrap_or_else(|| Field { basis: Basis::over(&outline, 2), coefficients: Vec::new() })
+}
+
+/// Orders of the derivatives whose squares are least, with weights. A polynomial of degree 2k + 1 cannot be zero with k derivatives along a
+/// closed curve, and one of degree 2k + 2 can: (1 − x² − y²)^(k + 1). So up to order 2k + 2 the borders determine the surface.
+fn weights(ribbons: &Ribbons) -> Vec<(usize, f64)> {
+    match ribbons.order {
+        order if ribbons.is_held() => vec![(order + 3, 1.0)],
+        order if order > 0 && ribbons.along.iter().any(Along::any) => vec![(2, 0.1), (3, 1.0)],
+        _ => vec![(2, 1.0), (3, 0.01)],
+    }
 }
 
 /// Places of the border with what is asked for there; `offset` 0: ends and between, 0.5: between those.
@@ -167,9 +183,8 @@ fn through(ribbons: &Ribbons, basis: &Basis, (asked, energy): Asked, inner: &[DV
             rows.push(&across, first - d.extend(0.0), WEIGHTS[1] * share);
             if ribbons.order > 1 {
                 let parts = [values.derivative(2, 0), values.derivative(1, 1), values.derivative(0, 2)];
-                let twice: Vec<f64> = (0..x.len())
-                    .map(|k| parts[0][k] * d.x * d.x + parts[1][k] * 2.0 * d.x * d.y + parts[2][k] * d.y * d.y)
-                    .collect();
+                let twice: Vec<f64> =
+                    (0..x.len()).map(|k| parts[0][k] * d.x * d.x + parts[1][k] * 2.0 * d.x * d.y + parts[2][k] * d.y * d.y).collect();
                 rows.push(&twice, second, WEIGHTS[2] * share);
             }
         }

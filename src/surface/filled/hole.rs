@@ -62,10 +62,7 @@ pub fn sides(borders: &[Chain], origin: Origin, tolerance: &Tolerance) -> Result
     }
     let n = chains.len();
     let corner = |k: usize| 0.5 * (chains[(k + n - 1) % n].end() + chains[k % n].start());
-    let side = |k: usize| HoleSide {
-        shifts: (corner(k) - chains[k].start(), corner(k + 1) - chains[k].end()),
-        chain: chains[k].clone(),
-    };
+    let side = |k: usize| HoleSide { shifts: (corner(k) - chains[k].start(), corner(k + 1) - chains[k].end()), chain: chains[k].clone() };
     Ok((0..n).map(side).collect())
 }
 

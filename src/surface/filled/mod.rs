@@ -3,11 +3,11 @@
 //! A polynomial of least bending over a plane meets borders, tangent planes and curvatures in the sense of least squares; what it misses is
 //! blended in from the borders; patches round a centre, one at each corner, are nets through the sum. `docs/notes/fill.md` has the formulas.
 
-pub mod fill;
 mod beside;
 mod chebyshev;
 mod energy;
 mod field;
+pub mod fill;
 mod hole;
 mod householder;
 mod net;

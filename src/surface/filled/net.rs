@@ -1,29 +1,34 @@
 //! The net of a corner of a hole: the field and what the borders are off it, blended in, interpolated by a spline.
 
-use glam::{DVec3, DVec4};
+use glam::{DVec2, DVec3, DVec4};
 
+use crate::base::job;
+use crate::base::math;
 use crate::base::tolerance::{EPSILON, Tolerance};
 use crate::surface::data::breaks::chain_breaks;
 use crate::surface::data::one_sided::OneSided;
 use crate::surface::filled::field::Field;
-use crate::surface::filled::patch::{EdgePlace, Half, Kite};
+use crate::surface::filled::patch::{EdgePlace, Part, Patch};
 use crate::surface::filled::ribbon::Ribbons;
 use crate::surface::shapes::nurbs::NurbsSurface;
 
 /// Degree of the nets.
 const DEGREE: usize = 7;
-/// Numbers of spans that are tried, one after the other.
-const SPANS: [usize; 6] = [2, 4, 8, 16, 32, 48];
+/// Numbers of spans that are tried, one after the other, and whether there is a knot wherever a border is less than analytic.
+const TRIES: [(usize, bool); 8] = [(2, false), (4, false), (8, false), (2, true), (4, true), (16, false), (8, true), (32, true)];
 /// How near to the borders nets are, as a share of the tolerance.
 const NEAR: f64 = 2e-4;
+/// Power by which what two sides say at their corner fades along them.
+const FADE: i32 = 4;
 /// Least width of a span, as a share of the mean.
 const NARROW: f64 = 0.3;
 
-/// What the border is off the field along half a side: positions and derivatives across, in the patch's parameters.
+/// What the border is off the field at a place of an edge: position, and derivative across in the patch's parameters.
 #[derive(Clone, Copy, Debug)]
 struct Off {
     at: EdgePlace,
-    exact: DVec3,
+    /// The point of the border.
+    exact: Option<DVec3>,
     zero: DVec3,
     one: DVec3,
 }
@@ -32,7 +37,7 @@ struct Off {
 pub struct PatchNet<'a> {
     pub ribbons: &'a Ribbons<'a>,
     pub field: &'a Field,
-    pub kite: Kite,
+    pub patch: Patch,
 }
 
 /// Values at 0 and 1: B0 is 1 and 0, B1 has a derivative of 1 and 0; all other derivatives up to the second are 0.
@@ -43,26 +48,66 @@ fn blends(t: f64) -> [f64; 2] {
 }
 
 impl PatchNet<'_> {
-    fn off(&self, half: Half, across: impl Fn(&EdgePlace) -> glam::DVec2, t: f64) -> Off {
-        let place = self.ribbons.place(half.side, half.fraction(t));
-        let at = half.flat(self.ribbons, t);
+    /// What a side is off at a fraction: the point there, the position, and the derivative where the plane is left in a direction.
+    fn at_side(&self, side: usize, f: f64, way: DVec2) -> (DVec3, DVec3, DVec3) {
+        let place = self.ribbons.place(side, f);
         let jet = self.field.jet(place.p.truncate());
-        let zero = place.p - jet.p;
-        // The derivative across the border is that along it and that inward.
-        let dv = across(&at);
-        let square = at.d.length_squared();
-        let (along, inward) = if square > 0.0 { (dv.dot(at.d) / square, dv.dot(place.inward)) } else { (0.0, 0.0) };
-        let slide = place.d1 * (half.to - half.from) - jet.along(at.d);
+        let d = place.d1.truncate();
+        let square = d.length_squared();
+        let (along, inward) = if square > 0.0 { (way.dot(d) / square, way.dot(place.inward)) } else { (0.0, 0.0) };
+        let slide = place.d1 - jet.along(d);
         let turn = place.across.map_or(DVec3::ZERO, |(first, _)| first - jet.along(place.inward));
-        Off { at, exact: place.p, zero, one: slide * along + turn * inward }
+        (place.p, place.p - jet.p, slide * along + turn * inward)
     }
 
     fn edges(&self, us: &[f64], vs: &[f64]) -> (Vec<Off>, Vec<Off>) {
-        let k = &self.kite;
-        let (low, west) = (k.bottom.flat(self.ribbons, 0.0), k.left.flat(self.ribbons, 0.0));
-        let bottom = us.iter().map(|u| self.off(k.bottom, |at| k.map(at, &west)[2], *u)).collect();
-        let left = vs.iter().map(|v| self.off(k.left, |at| k.map(&low, at)[1], *v)).collect();
+        let (patch, ribbons) = (&self.patch, self.ribbons);
+        let off = |part: Option<Part>, at: EdgePlace, way: DVec2| match part {
+            Some(part) => {
+                let (exact, zero, one) = self.at_side(part.side, part.fraction(at.t), way);
+                Off { at, exact: Some(exact), zero, one }
+            }
+            None => Off { at, exact: None, zero: DVec3::ZERO, one: DVec3::ZERO },
+        };
+        let (low, west) = (patch.on_bottom(ribbons, 0.0), patch.on_left(ribbons, 0.0));
+        let bottom = us.iter().map(|u| patch.on_bottom(ribbons, *u)).map(|at| off(patch.bottom, at, patch.map(&at, &west)[2]));
+        let left = vs.iter().map(|v| patch.on_left(ribbons, *v)).map(|at| off(patch.left, at, patch.map(&low, &at)[1]));
+        let (mut bottom, left): (Vec<Off>, Vec<Off>) = (bottom.collect(), left.collect());
+        if let (Some(part), None) = (patch.bottom, patch.left) {
+            self.agree(part, &mut bottom);
+        }
         (bottom, left)
+    }
+
+    /// Makes derivatives across a whole side at its ends those that the patch beside it has: what is missing fades along the side.
+    fn agree(&self, part: Part, bottom: &mut [Off]) {
+        let (patch, n) = (&self.patch, self.ribbons.sides.len());
+        let west = patch.on_left(self.ribbons, 0.0);
+        let missing = [0.0, 1.0].map(|t: f64| {
+            let way = patch.map(&patch.on_bottom(self.ribbons, t), &west)[2];
+            let corner = if t == 0.0 { part.side } else { (part.side + 1) % n };
+            self.at_corner(corner, way) - self.at_side(part.side, t, way).2
+        });
+        for off in bottom {
+            let t = off.at.t;
+            off.one += missing[0] * math::powi(1.0 - t, FADE) + missing[1] * math::powi(t, FADE);
+        }
+    }
+
+    /// What a corner is off in a direction: by the derivatives along both sides, where these run in different directions, else the mean of what
+    /// both sides say.
+    fn at_corner(&self, corner: usize, way: DVec2) -> DVec3 {
+        const APART: f64 = 0.1;
+        let n = self.ribbons.sides.len();
+        let ends = [((corner + n - 1) % n, 1.0), (corner, 0.0)];
+        let [a, b] = ends.map(|(side, f)| self.ribbons.place(side, f).d1.truncate());
+        let cross = a.perp_dot(b);
+        if cross.abs() > APART * a.length() * b.length() {
+            let [along_a, along_b] = [(ends[0], a), (ends[1], b)].map(|((side, f), d)| self.at_side(side, f, d).2);
+            return along_a * (way.perp_dot(b) / cross) + along_b * (a.perp_dot(way) / cross);
+        }
+        let [one, other] = ends.map(|(side, f)| self.at_side(side, f, way).2);
+        0.5 * (one + other)
     }
 
     /// Points of a grid, u fastest, in the plane's coordinates.
@@ -70,19 +115,23 @@ impl PatchNet<'_> {
         const STEP: f64 = 1e-3;
         let (bottom, left) = self.edges(us, vs);
         let (ends, sides) = self.edges(&[0.0, STEP], &[0.0, STEP]);
+        let both_sides = if self.patch.left.is_some() { 1.0 } else { 0.0 };
         let corner = ends[0].zero;
         let twist = 0.5 * ((ends[1].one - ends[0].one) + (sides[1].one - sides[0].one)) / STEP;
         let mut out = Vec::with_capacity(us.len() * vs.len());
         for b in &left {
             for a in &bottom {
-                if b.at.t == 0.0 || a.at.t == 0.0 {
-                    out.push(if b.at.t == 0.0 { a.exact } else { b.exact });
-                    continue;
+                match (a.exact, b.exact) {
+                    (Some(p), _) if b.at.t == 0.0 => out.push(p),
+                    (_, Some(p)) if a.at.t == 0.0 => out.push(p),
+                    _ => {
+                        let (x, y) = (blends(a.at.t), blends(b.at.t));
+                        let each = a.zero * y[0] + a.one * y[1] + b.zero * x[0] + b.one * x[1];
+                        let both =
+                            corner * (x[0] * y[0]) + sides[0].one * (x[1] * y[0]) + ends[0].one * (x[0] * y[1]) + twist * (x[1] * y[1]);
+                        out.push(self.field.point(self.patch.map(&a.at, &b.at)[0]) + each - both * both_sides);
+                    }
                 }
-                let (x, y) = (blends(a.at.t), blends(b.at.t));
-                let each = a.zero * y[0] + a.one * y[1] + b.zero * x[0] + b.one * x[1];
-                let both = corner * (x[0] * y[0]) + sides[0].one * (x[1] * y[0]) + ends[0].one * (x[0] * y[1]) + twist * (x[1] * y[1]);
-                out.push(self.field.jet(self.kite.map(&a.at, &b.at)[0]).p + each - both);
             }
         }
         out
@@ -116,7 +165,7 @@ impl Spline {
         Self { knots, sites, rows }
     }
 
-    /// Poles through values at the sites; the matrix is totally positive, so that elimination needs no pivots [de Boor 2001, XIII].
+    /// Poles through values at the sites; the matrix is totally positive, so that elimination needs no pivots [de Boor 1978, chapter XIII].
     fn poles(&self, values: &mut [DVec3]) {
         let n = self.sites.len();
         let (mut rows, width) = (self.rows.clone(), DEGREE + 1);
@@ -163,8 +212,9 @@ fn functions(knots: &[f64], t: f64) -> (usize, Vec<f64>) {
     (span - DEGREE, values)
 }
 
-/// Parameters of half a side where it is not analytic, with the multiplicity of a knot there.
-fn breaks(ribbons: &Ribbons, half: Half, tolerance: &Tolerance) -> Vec<(f64, usize)> {
+/// Parameters of an edge where it is not analytic, with the multiplicity of a knot there.
+fn breaks(ribbons: &Ribbons, part: Option<Part>, tolerance: &Tolerance) -> Vec<(f64, usize)> {
+    let Some(half) = part else { return Vec::new() };
     let chain = &ribbons.sides[half.side].chain;
     let near = tolerance.point / chain.length();
     let mut found: Vec<(f64, usize)> = Vec::new();
@@ -189,12 +239,16 @@ fn breaks(ribbons: &Ribbons, half: Half, tolerance: &Tolerance) -> Vec<(f64, usi
 /// The net of a patch, within a share of the tolerance of its borders.
 pub fn net(patch: &PatchNet, tolerance: &Tolerance) -> NurbsSurface {
     let ribbons = patch.ribbons;
-    let [along, up] = [patch.kite.bottom, patch.kite.left].map(|half| breaks(ribbons, half, tolerance));
+    let [along, up] = [patch.patch.bottom, patch.patch.left].map(|part| breaks(ribbons, part, tolerance));
     let near = (NEAR * tolerance.point).max(tolerance.rounding);
     let mut best: Option<(f64, NurbsSurface)> = None;
-    for spans in SPANS {
-        crate::base::job::poll();
-        let net = with_spans(patch, &Spline::new(&along, spans), &Spline::new(&up, spans));
+    for (spans, broken) in TRIES {
+        job::poll();
+        let [u, v] = [&along, &up].map(|breaks| {
+            let kept: Vec<(f64, usize)> = breaks.iter().copied().filter(|(_, times)| broken || *times >= DEGREE - 1).collect();
+            Spline::new(&kept, spans)
+        });
+        let net = with_spans(patch, &u, &v);
         let off = distance(patch, &net);
         if best.as_ref().is_none_or(|(before, _)| off < *before) {
             best = Some((off, net));
@@ -231,11 +285,13 @@ fn distance(patch: &PatchNet, net: &NurbsSurface) -> f64 {
     const INSIDE: usize = 5;
     let side = OneSided::After;
     let point = |u: f64, v: f64| net.jet(u, v, (side, side)).p;
-    let edge = |half: Half, t: f64| patch.ribbons.sides[half.side].point(half.fraction(t));
+    let edge = |part: Part, t: f64| patch.ribbons.sides[part.side].point(part.fraction(t));
     let at = |k: usize, n: usize| (k as f64 + 0.37) / n as f64;
     let mut worst: f64 = 0.0;
     for t in (0..PLACES).map(|k| at(k, PLACES)) {
-        worst = worst.max(point(t, 0.0).distance(edge(patch.kite.bottom, t))).max(point(0.0, t).distance(edge(patch.kite.left, t)));
+        let bottom = patch.patch.bottom.map_or(0.0, |part| point(t, 0.0).distance(edge(part, t)));
+        let left = patch.patch.left.map_or(0.0, |part| point(0.0, t).distance(edge(part, t)));
+        worst = worst.max(bottom).max(left);
     }
     let ts: Vec<f64> = (0..=INSIDE).map(|k| if k == INSIDE { 1.0 } else { at(k, INSIDE) }).collect();
     let inside = patch.grid(&ts, &ts);
