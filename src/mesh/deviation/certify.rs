@@ -16,7 +16,7 @@ use crate::surface::{Domain, Strip, Surface};
 /// Whether all elements of a mapped face (a quad as its two triangles) keep a distance from its surface, model units;
 /// `triangles` are those of the face.
 pub fn of_face(surface: &Surface, limit: f64, geometry: &FaceGeometry, triangles: &[[u32; 3]], nodes: &[DVec3]) -> Proof {
-    let prepared = surface.prepared();
+    let prepared = surface.quick();
     let surface = if prepared.evaluator().has_ranges() { prepared.evaluator() } else { surface.evaluator() };
     match &geometry.nodes {
         FaceNodes::Grid(grid, frame) => {

@@ -68,7 +68,7 @@ impl Nearest {
 
     fn sampled(&self) -> &Sampled {
         self.sampled.get_or_init(|| match self.whole.domain() {
-            Domain::Square | Domain::Triangle => Sampled { samples: Samples::new(&self.whole), prepared: self.whole.prepared() },
+            Domain::Square | Domain::Triangle => Sampled { samples: Samples::new(&self.whole), prepared: self.whole.quick() },
             _ => Sampled { samples: Samples::default(), prepared: PreparedSurface::plain(&self.whole) },
         })
     }

@@ -28,6 +28,11 @@ impl Surface {
         PreparedSurface { surface: self.clone(), power_form: self.power_form() }
     }
 
+    /// The same, with that of a blend of curves too.
+    pub fn quick(&self) -> PreparedSurface {
+        PreparedSurface { surface: self.clone(), power_form: self.power_form().or_else(|| self.blend_form()) }
+    }
+
     /// Evaluation by the shape alone, for few evaluations.
     pub fn evaluator(&self) -> Evaluator<'_> {
         Evaluator { surface: self, power_form: None }

@@ -71,15 +71,22 @@ impl Bends {
 }
 
 impl Surface {
-    /// The net or the blend made ready; `None` for surfaces that are neither.
+    /// The net made ready; `None` for surfaces that are none.
     pub fn power_form(&self) -> Option<PowerForm> {
-        let form = match &self.parts().shape {
-            Shape::Nurbs(net) if net.degree.0.max(net.degree.1) <= HIGHEST => Form::Net(self.ready().net.take(|| Some(Powers::new(net)))?),
-            // A plane with a map is evaluated as cheaply by itself.
-            Shape::Blend(blend) if self.kind() != SurfaceKind::Plane => Form::Blend(self.ready().blend.take(|| BlendPowers::new(blend))?),
-            _ => return None,
-        };
-        Some(PowerForm { surface: self.clone(), form })
+        let Shape::Nurbs(net) = &self.parts().shape else { return None };
+        if net.degree.0.max(net.degree.1) > HIGHEST {
+            return None;
+        }
+        Some(PowerForm { surface: self.clone(), form: Form::Net(self.ready().net.take(|| Some(Powers::new(net)))?) })
+    }
+
+    /// The blend of curves made ready; `None` for surfaces that are none, and for planes with a map, which are as cheap by themselves.
+    pub(super) fn blend_form(&self) -> Option<PowerForm> {
+        let Shape::Blend(blend) = &self.parts().shape else { return None };
+        if self.kind() == SurfaceKind::Plane {
+            return None;
+        }
+        Some(PowerForm { surface: self.clone(), form: Form::Blend(self.ready().blend.take(|| BlendPowers::new(blend))?) })
     }
 }
 

@@ -7,6 +7,7 @@ pub mod blend_enclosure;
 mod blend_grid;
 pub mod blend_powers;
 mod blend_terms;
+mod blend_track;
 pub mod cardinal;
 pub mod cubic_triangle;
 pub mod frame;
