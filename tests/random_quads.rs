@@ -87,5 +87,5 @@ fn plates_not_met_before() {
 #[test]
 fn plates_with_few_irregular_nodes() {
     let (mean, worst, irregular) = floors(|text| text.replace("elements: quads", "elements: quads  regular: true"));
-    assert!(mean >= 0.968 && worst >= WORST && irregular <= 0.035, "{mean} {worst} {irregular}");
+    assert!(mean >= 0.968 && worst >= WORST && irregular <= 0.037, "{mean} {worst} {irregular}");
 }

@@ -168,6 +168,14 @@ pub const CURVE_HEIGHT_ROUNDING: f64 = 4e-16;
 pub const CURVE_CROSSINGS_APART: f64 = 1e-7;
 /// Points of a section and of a line of a hull that are nearer than this share of the hull's diagonal are one.
 pub const OFFSETS_SAME: f64 = 1e-6;
+/// Places of the border of a plane face of quads are multiples of a power of two, about this share of its diagonal.
+pub const PLANE_GRID: f64 = 1.5e-11;
+/// What a filled hole may be off its borders, as a share of its size; off their tangent planes, radians; off their curvatures, as a share.
+pub const FILL_GAP: f64 = 1e-7;
+pub const FILL_ANGLE: f64 = 1e-5;
+pub const FILL_BEND: f64 = 1e-3;
+/// A pivot of least squares of a hole below this share of its own entry is none.
+pub const FILL_PIVOT: f64 = 1e-13;
 
 impl Tolerance {
     /// Tolerance with the given point distance in a model of the given box diagonal, both in model units.

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::base::tolerance::Tolerance;
+use crate::base::tolerance::{PARALLEL, Tolerance};
 use crate::base::{job, math, par};
 use crate::mesh::data::mesh::{FaceRange, Mesh};
 
@@ -213,7 +213,7 @@ impl Mesh {
 }
 
 /// Sine of a corner of a half turn but for rounding, and the area of a quad without one over the product of its diagonals.
-const STRAIGHT: f64 = 1e-9;
+const STRAIGHT: f64 = PARALLEL;
 
 /// Whether a quad has a corner of a half turn or more, or no area, but for rounding.
 pub fn is_concave(p: [DVec3; 4]) -> bool {

@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::base::bbox::Box3;
-use crate::base::tolerance::Tolerance;
+use crate::base::tolerance::{PLANE_GRID, Tolerance};
 use crate::mesh::chart::affine::Chart;
 use crate::mesh::chart::outline::Outline;
 use crate::mesh::chart::parametric_surface::ParametricSurface;
@@ -11,8 +11,6 @@ use crate::mesh::request::sources::{Body, Source, Sources};
 use crate::surface::core::plane;
 use crate::surface::{Nearest, Surface};
 
-/// Places of the border are multiples of a power of two, about this share of the diagonal of the face.
-const GRID: f64 = 1.5e-11;
 /// At least so many times the rounding of coordinates, and at most this share of the tolerance.
 const ROUNDINGS: f64 = 4096.0 * f64::EPSILON;
 const TOLERANCE_SHARE: f64 = 1.0 / 16.0;
@@ -54,7 +52,7 @@ impl<'a> LevelFace<'a> {
         let placed = |k: usize| if plane.is_some() { outline.xy[k] } else { into(outline.p[k]).truncate() };
         let mut xy: Vec<DVec2> = (0..outline.p.len()).map(placed).collect();
         let (size, furthest) = (Box3::of(xy.iter().map(|xy| xy.extend(0.0))).diagonal(), Box3::of(outline.p.iter().copied()).furthest());
-        let step = power_of_two((GRID * size).max(ROUNDINGS * furthest).min(TOLERANCE_SHARE * tolerance.point))?;
+        let step = power_of_two((PLANE_GRID * size).max(ROUNDINGS * furthest).min(TOLERANCE_SHARE * tolerance.point))?;
         xy.iter_mut().for_each(|xy| *xy = (*xy / step).round() * step);
         let moved = |body: &Body| match body {
             Body::Point(p) => Body::Point(into(*p)),

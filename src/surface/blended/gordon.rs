@@ -8,7 +8,7 @@
 //! contains every curve to rounding. It is evaluated as this sum: nothing is fitted. Given end slopes would change
 //! nothing but a and b: fields of end slopes that come from the net itself, interpolated by the same splines, cancel between
 //! the parts. So the ends are "not a knot", which reproduces cubics, and closed directions are periodic. Where all curves of a direction
-//! have a corner at a node the splines have one too (`rails/corners.rs`).
+//! have a corner at a node the splines have one too (`corners.rs`).
 //!
 //! The error for a net of lines of a surface F is (I − P_u)(I − P_v) F: zero where F is a cubic in one direction, and of
 //! the eighth order in the distances of the curves else.
@@ -19,12 +19,12 @@ use crate::base::origin::Origin;
 use crate::base::tolerance::{NUDGE, Tolerance};
 use crate::network::Chain;
 use crate::surface::blended::coons::{Made, finish};
+use crate::surface::blended::corners::spline_axis;
 use crate::surface::core::shape::Shape;
 use crate::surface::core::surface::Surface;
 use crate::surface::data::jet::unit_normal;
 use crate::surface::data::kind::SurfaceKind;
 use crate::surface::data::one_sided::OneSided;
-use crate::surface::rails::corners::spline_axis;
 use crate::surface::rails::rail::Rail;
 use crate::surface::shapes::blend::Blend;
 use crate::surface::shapes::rule::Rule;

@@ -2,6 +2,7 @@
 
 pub mod bridge;
 pub mod coons;
+mod corners;
 pub(crate) mod family;
 pub mod gordon;
 pub mod hermite;

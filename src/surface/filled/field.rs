@@ -4,6 +4,7 @@ use glam::{DVec2, DVec3};
 
 use crate::base::job;
 use crate::base::math;
+use crate::base::tolerance::{FILL_ANGLE, FILL_BEND, FILL_GAP};
 use crate::surface::filled::beside::Along;
 use crate::surface::filled::chebyshev::Basis;
 use crate::surface::filled::energy::{bending, quadrature};
@@ -22,7 +23,7 @@ const INNER: f64 = 1e7;
 /// Rounds in which the places of inner points are found, where the surface is no height over the plane.
 const ROUNDS: usize = 3;
 /// What is near enough: of the size, radians, share of the curvature.
-const NEAR: Missed = Missed { gap: 1e-7, angle: 1e-5, bend: 1e-3 };
+const NEAR: Missed = Missed { gap: FILL_GAP, angle: FILL_ANGLE, bend: FILL_BEND };
 /// Curvature below which differences count as of this one, over the size of the hole.
 const FLAT: f64 = 0.05;
 

@@ -22,7 +22,7 @@ use crate::surface::shapes::nurbs::NurbsSurface;
 /// Places of an inner curve that a surface passes.
 const INNER_PLACES: usize = 16;
 /// Angle between tangent planes that is as good as none, radians.
-const TOLD_ANGLE: f64 = 1.745e-4;
+const TOLD_ANGLE: f64 = std::f64::consts::PI / 18_000.0;
 /// Difference of curvatures that is as good as none.
 const TOLD_BEND: f64 = 0.01;
 

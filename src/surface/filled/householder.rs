@@ -2,6 +2,8 @@
 
 use glam::DVec3;
 
+use crate::base::tolerance::FILL_PIVOT;
+
 /// Rows of a least squares problem whose right sides are vectors.
 #[derive(Clone, Debug)]
 pub struct Rows {
@@ -82,7 +84,7 @@ pub fn factor(matrix: &[f64], n: usize) -> Vec<Vec<f64>> {
     for k in 0..n {
         let left = |rows: &[Vec<f64>], j: usize| matrix[k * n + j] - (0..k).map(|i| rows[i][k] * rows[i][j]).sum::<f64>();
         let pivot = left(&rows, k);
-        if pivot <= 1e-13 * matrix[k * n + k] {
+        if pivot <= FILL_PIVOT * matrix[k * n + k] {
             continue;
         }
         let root = pivot.sqrt();

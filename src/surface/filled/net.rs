@@ -17,7 +17,7 @@ const DEGREE: usize = 7;
 /// Numbers of spans that are tried, one after the other, and whether there is a knot wherever a border is less than analytic.
 const TRIES: [(usize, bool); 8] = [(2, false), (4, false), (8, false), (2, true), (4, true), (16, false), (8, true), (32, true)];
 /// How near to the borders nets are, as a share of the tolerance.
-const NEAR: f64 = 2e-4;
+const NEAR: f64 = 1.0 / 5000.0;
 /// Power by which what two sides say at their corner fades along them.
 const FADE: i32 = 4;
 /// Least width of a span, as a share of the mean.
@@ -112,7 +112,7 @@ impl PatchNet<'_> {
 
     /// Points of a grid, u fastest, in the plane's coordinates.
     fn grid(&self, us: &[f64], vs: &[f64]) -> Vec<DVec3> {
-        const STEP: f64 = 1e-3;
+        const STEP: f64 = 1.0 / 1024.0;
         let (bottom, left) = self.edges(us, vs);
         let (ends, sides) = self.edges(&[0.0, STEP], &[0.0, STEP]);
         let both_sides = if self.patch.left.is_some() { 1.0 } else { 0.0 };

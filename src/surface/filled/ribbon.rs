@@ -12,7 +12,7 @@ const PLACES: usize = 32;
 /// Least cosine between a normal and the direction along which heights over the plane are measured.
 const STEEP: f64 = 0.25;
 /// How far beside a border a face is looked for, as a share of the size of the hole.
-const ASIDE: f64 = 1e-3;
+const ASIDE: f64 = 1.0 / 1024.0;
 
 /// A place of the border in the coordinates of the plane.
 #[derive(Clone, Copy, Debug)]

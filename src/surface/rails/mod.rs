@@ -2,7 +2,6 @@
 //! and borders in (u, v).
 
 pub mod boundary;
-pub mod corners;
 pub mod line;
 pub mod mixed;
 pub mod rail;

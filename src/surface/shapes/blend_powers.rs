@@ -269,8 +269,8 @@ mod tests {
     use crate::geometry::construct::spline::{Ends, Spline, spline};
     use crate::network::Chain;
     use crate::surface::rails::reparam::{Map, Reparam};
-    use crate::surface::shapes::cardinal::Joins;
     use crate::surface::shapes::rule::Rule;
+    use crate::surface::shapes::spline_parts::Joins;
     use crate::surface::shapes::weights::BlendAxis;
 
     /// A net over a wavy surface whose curves run unevenly by their arc lengths, with a corner across u at its second node.

@@ -21,6 +21,7 @@ pub mod polynomial_pieces;
 pub mod powers;
 pub mod rule;
 pub mod speed_map;
+pub mod spline_parts;
 pub mod sweep;
 pub mod third_derivative_bounds;
 pub mod trilateral;

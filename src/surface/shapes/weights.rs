@@ -4,15 +4,14 @@
 //! rule is a spline there follow as many slopes across the nodes, which are fixed sums of the curves. So few functions
 //! differ from 0 at any parameter, whatever the number of curves. Hermite blends have the same functions, and slopes of no curves.
 //!
-//! Where all curves of the other family have a corner at one node, splines have one too: they run on either side by themselves, with a
-//! slope of their own at the node. A smooth spline would swing on both sides of every corner. Where they are straight up to a node,
-//! splines leave it with the slope of the straight part, which is a spline by itself too.
+//! Where all curves of the other family have a corner at one node, splines have one too and run on either side by themselves; a smooth
+//! one would swing beside it. Where they are straight up to a node, splines leave it with the slope of the straight part.
 
 use crate::base::range::Interval;
 use crate::base::tolerance::EPSILON;
 use crate::surface::data::one_sided::OneSided;
-use crate::surface::shapes::cardinal::{self, Joins};
 use crate::surface::shapes::rule::Rule;
+use crate::surface::shapes::spline_parts::{Joins, slopes_between};
 
 /// Parameters of the curves across one direction, ascending from 0 to 1, and the rule between them.
 #[derive(Clone, Debug)]
@@ -41,8 +40,7 @@ pub struct Weights {
     many: Vec<[f64; 3]>,
 }
 
-/// Share of the largest number of a slope's row that no sum feels any more: numbers halve at least from node to node, so what is far
-/// away is none of the slope's curves.
+/// Share of the largest number of a slope's row that no sum feels any more: numbers halve at least from node to node.
 const UNFELT: f64 = f64::EPSILON / 256.0;
 
 /// Up to so many blending values live without an allocation.
@@ -95,7 +93,7 @@ impl BlendAxis {
         }
         let mut slopes = match rule {
             Rule::Hermite => vec![vec![0.0; nodes.len()]; nodes.len()],
-            _ if rule.has_slopes() => cardinal::slopes_between(&nodes, &joints, rule == Rule::Periodic),
+            _ if rule.has_slopes() => slopes_between(&nodes, &joints, rule == Rule::Periodic),
             _ => Vec::new(),
         };
         for row in &mut slopes {
@@ -137,14 +135,10 @@ impl BlendAxis {
 
     /// How many derivatives of the blending functions go on at an inner node.
     pub fn smoothness(&self, node: usize) -> usize {
-        match self.rule {
-            Rule::Linear => 0,
-            Rule::Cubic | Rule::Hermite => 1,
-            Rule::Spline | Rule::Periodic | Rule::Lagrange => match self.joints.iter().find(|joint| joint.0 == node) {
-                Some((_, Joins::Corner)) => 0,
-                Some(_) => 1,
-                None => 2,
-            },
+        match (self.rule, self.joints.iter().find(|joint| joint.0 == node)) {
+            (Rule::Linear, _) | (_, Some((_, Joins::Corner))) => 0,
+            (Rule::Cubic | Rule::Hermite, _) | (_, Some(_)) => 1,
+            _ => 2,
         }
     }
 

@@ -20,8 +20,9 @@ builtins! {
     /// angle there, and tangent planes or curvatures that are missed W682. A face that lies along no border is E680.
     /// ```loft
     /// let rim = [for k in 0..5: (cos(k * 72deg) * 1m, sin(k * 72deg) * 1m, 0)]
-    /// let walls = [for k in 0..5: extrude(line(rim[k], rim[mod(k + 1, 5)]), by: (0, 0, -1m))]
-    /// let lid = fill([for wall in walls: wall.sides[3]], inner: [(0, 0, 200mm)])
+    /// let ring = [for k in 0..5: line(rim[k], rim[mod(k + 1, 5)])]
+    /// let walls = [for side in ring: extrude(side, by: (0, 0, -1m))]
+    /// let lid = fill(ring, inner: [(0, 0, 200mm)])
     /// shell tent of walls, lid
     /// ```
     fn fill(

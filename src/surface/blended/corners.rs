@@ -3,8 +3,8 @@
 use crate::base::tolerance::{NUDGE, Tolerance};
 use crate::surface::data::one_sided::OneSided;
 use crate::surface::rails::rail::Rail;
-use crate::surface::shapes::cardinal::Joins;
 use crate::surface::shapes::rule::Rule;
+use crate::surface::shapes::spline_parts::Joins;
 use crate::surface::shapes::weights::BlendAxis;
 
 /// Splines through the curves at `nodes`: they have corners where all curves along the direction, `rails`, have one, and run by themselves where
