@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::base::tolerance::{NUDGE, PARALLEL, Tolerance};
+use crate::base::tolerance::{BESIDE, NUDGE, PARALLEL, Tolerance};
 use crate::geometry::Curve;
 use crate::geometry::curves::curve::Shape as CurveShape;
 use crate::geometry::shapes::arc::EllipticArc;
@@ -121,7 +121,14 @@ impl Surface {
         let middle = arc.jet(0.5 * arc.sweep);
         let way = match path {
             Path::Straight { by } => by,
-            Path::Turn { about, axis, .. } => (middle.p - about).cross(axis),
+            Path::Turn { about, axis, .. } => {
+                // An end beside the axis is a pole within the tolerance, and none of the arc itself.
+                let off = |p: DVec3| (p - about).reject_from_normalized(axis).length();
+                if off(profile.start()).min(off(profile.end())) <= BESIDE * profile.length() {
+                    return None;
+                }
+                (middle.p - about).cross(axis)
+            }
         };
         let jet = self.jet(0.0, 0.5 * (v.0 + v.1));
         let along = middle.d1.cross(way).dot(jet.du.cross(jet.dv)) > 0.0;
