@@ -11,16 +11,28 @@ use crate::model::body::BodyLoop;
 use crate::model::{Body, BodyEdge};
 use crate::surface::analysis::elementary::{Elementary, Form};
 
+/// How far the ends of a curve may be from those of its edge, as a share of the tolerance.
+const ENDS: f64 = 0.25;
+
 /// Parts the edges of a body whose curves have pieces that are lines or arcs of circles: a vertex where two pieces meet, an edge and a
 /// curve a piece. An edge of which a piece would be shorter than the tolerance stays whole.
 pub(super) fn part_edges(body: &mut Body, vertices: &mut Vec<DVec3>, curves: &mut Vec<Option<Curve>>, tolerance: &Tolerance) {
     let mut parts: Vec<Vec<usize>> = Vec::with_capacity(curves.len());
     for k in 0..curves.len() {
         let pieces = curves[k].as_ref().map_or_else(Vec::new, |curve| exact_pieces(curve, tolerance));
+        // A curve whose ends are not those of its edge, as at a pole beside the axis, goes out as it is.
+        let ends = body.edges[k].ends;
+        let near = |piece: Option<&Curve>, vertex: usize, end: fn(&Curve) -> DVec3| {
+            piece.is_some_and(|piece| end(piece).distance(vertices[vertex]) <= ENDS * tolerance.point)
+        };
         let [first, others @ ..] = pieces.as_slice() else {
             parts.push(vec![k]);
             continue;
         };
+        if !near(pieces.first(), ends.0, Curve::start) || !near(pieces.last(), ends.1, Curve::end) {
+            parts.push(vec![k]);
+            continue;
+        }
         curves[k] = Some(first.clone());
         let mut own = vec![k];
         let (last, part) = (body.edges[k].ends.1, body.edges[k].part.clone());
