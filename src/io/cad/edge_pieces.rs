@@ -35,7 +35,7 @@ pub(super) fn part_edges(body: &mut Body, vertices: &mut Vec<DVec3>, curves: &mu
         }
         curves[k] = Some(first.clone());
         let mut own = vec![k];
-        let (last, part) = (body.edges[k].ends.1, body.edges[k].part.clone());
+        let (last, part) = (body.edges[k].ends.1, body.edges[k].part);
         let mut s = part.s.0 + first.length();
         body.edges[k].part.s.1 = s;
         for piece in others {
@@ -43,7 +43,7 @@ pub(super) fn part_edges(body: &mut Body, vertices: &mut Vec<DVec3>, curves: &mu
             vertices.push(piece.start());
             body.vertices.push(piece.start());
             body.edges[own[own.len() - 1]].ends.1 = joint;
-            let mut edge = BodyEdge { part: part.clone(), ends: (joint, last), seam: None };
+            let mut edge = BodyEdge { part, ends: (joint, last), seam: None };
             edge.part.s = (s, s + piece.length());
             s = edge.part.s.1;
             own.push(body.edges.len());

@@ -10,11 +10,15 @@ use crate::model::topology::Named;
 use crate::model::{Lines, Model, Shell, SurfaceId};
 use crate::surface::Domain;
 
+/// Faces that were cut, and which of the surfaces given.
+pub(super) type CutFaces = (Faces, Vec<SurfaceId>);
+
 impl Faces {
     /// The same faces in a model of their own, in which they are cut, and which of them are; `None` where none is to be cut. Each part
     /// has the name, colour and layers of its face.
-    pub(super) fn in_pieces(&self, tolerance: &Tolerance) -> Result<Option<(Self, Vec<SurfaceId>)>, Defect> {
-        let (mut surfaces, mut sides, mut lines): (Vec<Named>, Vec<(SurfaceId, bool)>, Vec<(SurfaceId, Lines)>) = Default::default();
+    pub(super) fn in_pieces(&self, tolerance: &Tolerance) -> Result<Option<CutFaces>, Defect> {
+        let (mut surfaces, mut sides): (Vec<Named>, Vec<(SurfaceId, bool)>) = (Vec::new(), Vec::new());
+        let mut lines: Vec<(SurfaceId, Lines)> = Vec::new();
         let mut place_of: BTreeMap<SurfaceId, Vec<SurfaceId>> = BTreeMap::new();
         let mut parted = Vec::new();
         for (id, other) in &self.shell.surfaces {

@@ -43,7 +43,7 @@ pub(crate) fn prepare(
 ) -> Result<FaceMesh> {
     let surface = &face_input.input.model.surfaces[face.surface.index()].surface;
     let rules = near(face_input, face, outline);
-    let level = LevelFace::of(surface, chart, outline, &rules, &face_input.input.tolerance);
+    let level = LevelFace::of(surface, chart, outline, &rules, face_input.input.tolerance);
     let on = match &level {
         Some(level) => Ground { surface: level.chart.surface(), chart: &level.chart, outline: &level.outline, rules: &level.rules },
         None => Ground { surface, chart, outline, rules: &rules },
