@@ -2,7 +2,7 @@
 //!
 //! In a cell of the blending functions of u, with s from −1 to 1 in it, Σ a_i(u) (F_i(v) − Σ b_j(v) P_ij) is a polynomial in s whose
 //! coefficients are sums of curves along v; in a cell of v the same holds for Σ b_j(v) G_j(u). Curves run by their arc length, which no
-//! polynomial does, so pieces between their knots are halved until polynomials through Chebyshev points are within [`ACCURACY`] of them.
+//! polynomial does, so pieces between their knots are halved until polynomials through Chebyshev points come near to them.
 //! A point costs eight polynomials, however many curves the blend is made of; second derivatives over a box are bounded by their own
 //! coefficients about its middle. Pieces are made when they are first asked for.
 
@@ -191,7 +191,7 @@ impl BlendPowers {
         whole
     }
 
-    /// Stops with more of them where coefficients about the middle would say little: at most [`WIDEST`] of a cell apart.
+    /// Stops with more of them where coefficients about the middle would say little: at most a quarter of a cell apart.
     fn narrowed(&self, k: usize, stops: &[f64]) -> Vec<f64> {
         let mut all = vec![stops[0]];
         for w in stops.windows(2) {
