@@ -170,9 +170,11 @@ pub const CURVE_CROSSINGS_APART: f64 = 1e-7;
 pub const OFFSETS_SAME: f64 = 1e-6;
 /// Places of the border of a plane face of quads are multiples of a power of two, about this share of its diagonal.
 pub const PLANE_GRID: f64 = 1.5e-11;
-/// What a filled hole may be off its borders, as a share of its size; off their tangent planes, radians; off their curvatures, as a share.
+/// How far the first field of a hole may be from the borders, as a share of the size of the hole.
 pub const FILL_GAP: f64 = 1e-7;
+/// How far its tangent planes may be from those beside it, radians.
 pub const FILL_ANGLE: f64 = 1e-5;
+/// How far its curvatures may be from those beside it, as a share of these.
 pub const FILL_BEND: f64 = 1e-3;
 /// A pivot of least squares of a hole below this share of its own entry is none.
 pub const FILL_PIVOT: f64 = 1e-13;

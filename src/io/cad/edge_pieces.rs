@@ -15,7 +15,7 @@ use crate::surface::analysis::elementary::{Elementary, Form};
 const ENDS: f64 = 0.25;
 
 /// Parts the edges of a body whose curves have pieces that are lines or arcs of circles: a vertex where two pieces meet, an edge and a
-/// curve a piece. An edge of which a piece would be shorter than the tolerance stays whole.
+/// curve for each piece. An edge with a piece shorter than the tolerance stays whole.
 pub(super) fn part_edges(body: &mut Body, vertices: &mut Vec<DVec3>, curves: &mut Vec<Option<Curve>>, tolerance: &Tolerance) {
     let mut parts: Vec<Vec<usize>> = Vec::with_capacity(curves.len());
     for k in 0..curves.len() {

@@ -17,7 +17,7 @@ use crate::io::cad::control_nets::spline;
 pub(super) fn exact_pieces(curve: &Curve, tolerance: &Tolerance) -> Vec<Curve> {
     let whole = curve.length();
     let mut pieces: Vec<Curve> = border::pieces(curve).iter().flat_map(|piece| of_piece(piece, tolerance)).collect();
-    // What rounding left of a piece beside a joint is none.
+    // Cutting at a joint may leave a piece that has no length but for rounding.
     pieces.retain(|piece| piece.length() > SLIVER * whole);
     if !pieces.iter().any(is_simple) || pieces.iter().any(|piece| piece.length() <= tolerance.point) {
         return vec![curve.clone()];

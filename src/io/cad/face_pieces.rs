@@ -14,8 +14,8 @@ use crate::surface::Domain;
 pub(super) type CutFaces = (Faces, Vec<SurfaceId>);
 
 impl Faces {
-    /// The same faces in a model of their own, in which they are cut, and which of them are; `None` where none is to be cut. Each part
-    /// has the name, colour and layers of its face.
+    /// The faces cut where the pieces of their profiles meet, in a model of their own, with the surfaces that were cut; `None` where none
+    /// is. Each part has the name, colour and layers of its face.
     pub(super) fn in_pieces(&self, tolerance: &Tolerance) -> Result<Option<CutFaces>, Defect> {
         let (mut surfaces, mut sides): (Vec<Named>, Vec<(SurfaceId, bool)>) = (Vec::new(), Vec::new());
         let mut lines: Vec<(SurfaceId, Lines)> = Vec::new();

@@ -53,13 +53,9 @@ pub struct Bends {
 impl Bends {
     /// What holds both.
     pub fn union(&self, other: &Self) -> Self {
-        let range = |k: usize| {
-            let low = (self.mid[k] - self.slack[k]).min(other.mid[k] - other.slack[k]);
-            let high = (self.mid[k] + self.slack[k]).max(other.mid[k] + other.slack[k]);
-            (0.5 * (low + high), 0.5 * (high - low))
-        };
-        let ranges = [0, 1, 2].map(range);
-        Self { mid: ranges.map(|r| r.0), slack: ranges.map(|r| r.1), jump: self.jump.max(other.jump) }
+        let of = |bends: &Self| BoxBends { mid: bends.mid, slack: bends.slack };
+        let BoxBends { mid, slack } = of(self).union(&of(other));
+        Self { mid, slack, jump: self.jump.max(other.jump) }
     }
 
     /// The most that the second derivative along a step of (u, v) is.
@@ -173,54 +169,35 @@ impl PowerForm {
         }
     }
 
-    /// Second derivatives along a unit vector over a box of (u, v), and what jumps of first ones inside add; `None` over a seam.
-    pub fn bends(&self, (low, high): (DVec2, DVec2), along: DVec3) -> Option<Bends> {
-        work::spend(4);
+    /// A box in the shape's own parameters; `None` over a seam.
+    fn own_box(&self, (low, high): (DVec2, DVec2)) -> Option<(DVec2, DVec2)> {
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
         // Round the middle: a box over a seam leaves the parameters at one side and is not answered.
         let (u, v) = self.surface.wrapped(middle.x, middle.y);
         let (u, v, _) = self.surface.inner(u, v, (OneSided::After, OneSided::After));
         let (low, high) = (DVec2::new(u, v) - half, DVec2::new(u, v) + half);
-        if low.min_element() < -EPSILON || high.max_element() > 1.0 + EPSILON {
-            return None;
-        }
+        (low.min_element() >= -EPSILON && high.max_element() <= 1.0 + EPSILON).then_some((low, high))
+    }
+
+    /// Second derivatives along a unit vector over a box of (u, v), and what jumps of first ones inside add; `None` over a seam.
+    pub fn bends(&self, (low, high): (DVec2, DVec2), along: DVec3) -> Option<Bends> {
+        work::spend(4);
+        let (low, high) = self.own_box((low, high))?;
         let bends = match self.parts() {
-            Made::Net(net, powers) => self.over_spans((net, powers), (low, high), along)?,
-            Made::Blend(blend, powers) => self.turned(&powers.bends(blend, (low, high), along)?),
+            Made::Net(net, powers) => over_spans((net, powers), (low, high), along)?,
+            Made::Blend(blend, powers) => powers.bends(blend, (low, high), along)?,
             Made::Neither => return None,
         };
-        Some(Bends { jump: self.jump((low, high), along), ..bends })
+        Some(Bends { jump: self.jump((low, high), along), ..self.turned(&bends) })
     }
 
     /// Ranges of ∂uu, ∂uv and ∂vv over a box of (u, v); `None` of a net, over a seam, and where first derivatives jump inside.
     pub fn ranges(&self, (low, high): (DVec2, DVec2)) -> Option<[Interval3; 3]> {
         let Made::Blend(blend, powers) = self.parts() else { return None };
         work::spend(4);
-        let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
-        let (u, v) = self.surface.wrapped(middle.x, middle.y);
-        let (u, v, _) = self.surface.inner(u, v, (OneSided::After, OneSided::After));
-        let (low, high) = (DVec2::new(u, v) - half, DVec2::new(u, v) + half);
-        if low.min_element() < -EPSILON || high.max_element() > 1.0 + EPSILON {
-            return None;
-        }
+        let (low, high) = self.own_box((low, high))?;
         let [duu, duv, dvv] = powers.ranges(blend, (low, high))?;
         Some([duu, if self.surface.parts().flipped { -duv } else { duv }, dvv])
-    }
-
-    /// Second derivatives of a net over a box, part by part between knots where they jump.
-    fn over_spans(&self, (net, powers): (&NurbsSurface, &Powers), (low, high): (DVec2, DVec2), along: DVec3) -> Option<Bends> {
-        let mut whole: Option<Bends> = None;
-        let mut from = low;
-        for y in crossed(&powers.rough.1, low.y, high.y).chain([high.y]) {
-            from.x = low.x;
-            for x in crossed(&powers.rough.0, low.x, high.x).chain([high.x]) {
-                let own = self.turned(&powers.bends(net, (from, DVec2::new(x, y)), along));
-                whole = Some(whole.map_or(own, |w| w.union(&own)));
-                from.x = x;
-            }
-            from.y = y;
-        }
-        whole
     }
 
     /// How far jumps of first derivatives in a box of the shape's own parameters move the surface along a unit vector away from
@@ -247,8 +224,8 @@ impl PowerForm {
         let off = (after.0 - before.0).dot(along).abs();
         // How the jump changes along the line: by the mixed derivatives beside it.
         let strip = |x: f64| match self.parts() {
-            Made::Net(net, powers) => self.over_spans((net, powers), (place(x, low), place(x, high)), along),
-            Made::Blend(blend, powers) => powers.bends(blend, (place(x, low), place(x, high)), along).map(|b| self.turned(&b)),
+            Made::Net(net, powers) => over_spans((net, powers), (place(x, low), place(x, high)), along),
+            Made::Blend(blend, powers) => powers.bends(blend, (place(x, low), place(x, high)), along),
             Made::Neither => None,
         };
         let (Some(a), Some(b)) = (strip(c - BEFORE_KNOT), strip(c + BEFORE_KNOT)) else { return UNBOUNDED_REACH };
@@ -269,6 +246,22 @@ enum Made<'a> {
     Net(&'a NurbsSurface, &'a Powers),
     Blend(&'a Blend, &'a BlendPowers),
     Neither,
+}
+
+/// Second derivatives of a net over a box, part by part between knots where they jump.
+fn over_spans((net, powers): (&NurbsSurface, &Powers), (low, high): (DVec2, DVec2), along: DVec3) -> Option<BoxBends> {
+    let mut whole: Option<BoxBends> = None;
+    let mut from = low;
+    for y in crossed(&powers.rough.1, low.y, high.y).chain([high.y]) {
+        from.x = low.x;
+        for x in crossed(&powers.rough.0, low.x, high.x).chain([high.x]) {
+            let own = powers.bends(net, (from, DVec2::new(x, y)), along);
+            whole = Some(whole.map_or(own, |w| w.union(&own)));
+            from.x = x;
+        }
+        from.y = y;
+    }
+    whole
 }
 
 /// Lines strictly inside an interval.

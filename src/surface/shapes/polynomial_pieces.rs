@@ -23,7 +23,8 @@ pub(crate) struct BoxBends {
 }
 
 impl BoxBends {
-    pub(super) fn union(&self, other: &Self) -> Self {
+    /// What holds both.
+    pub(crate) fn union(&self, other: &Self) -> Self {
         let range = |k: usize| {
             let low = (self.mid[k] - self.slack[k]).min(other.mid[k] - other.slack[k]);
             let high = (self.mid[k] + self.slack[k]).max(other.mid[k] + other.slack[k]);
