@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::base::job;
-use crate::base::tolerance::{EPSILON, NUDGE};
+use crate::base::tolerance::{EPSILON, NUDGE, TOLD_APART};
 use crate::surface::intersect::pair::{Pair, Spot};
 use crate::surface::intersect::sheet::{BorderLine, Patch};
 
@@ -67,10 +67,15 @@ impl Pair<'_> {
                     return Ok((spots, false));
                 }
                 let (x, y) = (here.a.lerp(a, share), here.b.lerp(b, share));
-                match self.on_border(first, line, x, y) {
-                    Some(end) if fits(&here, &end, h) && self.is_in(&end) && as_far(&here, &end, share * h, size) => {
+                match self.on_border(first, line, x, y).map(|end| self.aligned(&here, end)) {
+                    Some(end)
+                        if fits(&here, &end, h)
+                            && self.is_in(&end)
+                            && as_far(&here, &end, share * h, size)
+                            && self.turns_little(&here, &end) =>
+                    {
                         if end.p.distance(here.p) > EPSILON * size {
-                            spots.push(self.aligned(&here, end));
+                            spots.push(end);
                         }
                         return Ok((spots, false));
                     }
@@ -97,6 +102,11 @@ impl Pair<'_> {
             }
         }
         Err(spots[spots.len() - 1].p)
+    }
+
+    /// Whether the line turns by no more than a step may on its way to a place, or is too short to tell.
+    fn turns_little(&self, here: &Spot, next: &Spot) -> bool {
+        next.way.dot(here.way) >= MARCH.turn_cosines.0 || next.p.distance(here.p) <= TOLD_APART * self.point
     }
 
     /// At a place where a patch is singular the line ends, when that is a pole on its border.
