@@ -113,9 +113,11 @@ impl Sweep {
                 let turned = Turned::new(axis, Self::angle_at(angle, u));
                 let arm = turned.rotated(g.p - about);
                 let (dv, dvv) = (turned.rotated(g.d1), turned.rotated(g.d2));
-                // An end that rounding put beside the axis, or across it, is on it: there nothing turns.
+                // An end that rounding put beside the axis, or across it, is on it: there nothing turns. Far from the origin points are
+                // rounded by more than their arms say.
                 let across = axis.cross(arm);
-                let on_axis = across.length_squared() <= EPSILON * EPSILON * (arm.length_squared() + g.d1.length_squared());
+                let size = arm.length_squared() + g.d1.length_squared() + g.p.length_squared();
+                let on_axis = across.length_squared() <= EPSILON * EPSILON * size;
                 let du = if on_axis { DVec3::ZERO } else { across * angle };
                 Jet2 { p: about + arm, du, dv, duu: axis.cross(du) * angle, duv: axis.cross(dv) * angle, dvv }
             }
