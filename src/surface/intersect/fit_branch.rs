@@ -10,7 +10,7 @@ use crate::surface::intersect::pair::{Pair, Spot};
 use crate::surface::trims::project::{self, cubics};
 
 /// Share of the tolerance that a cubic may be off.
-const SHARE: f64 = 0.25;
+pub(super) const SHARE: f64 = 0.25;
 /// Places nearer to each other than so many tolerances are one: a march may end just beyond one.
 const SHORTEST: f64 = 4.0;
 

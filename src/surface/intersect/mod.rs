@@ -16,5 +16,8 @@ pub mod planes;
 pub mod revolved;
 pub mod self_intersection;
 pub mod sheet;
+pub mod turned;
+mod turned_branch;
+mod turned_spans;
 pub mod with_curve;
 pub mod with_surfaces;

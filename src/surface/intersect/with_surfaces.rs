@@ -26,6 +26,7 @@ use crate::surface::intersect::patch_pair::{Stopped, common};
 use crate::surface::intersect::planes::flat_faces;
 use crate::surface::intersect::revolved::flat_and_revolved;
 use crate::surface::intersect::sheet::{Sheet, patches, widely_grounded};
+use crate::surface::intersect::turned::flat_and_turned;
 use crate::surface::intersect::with_curve::{kept_intervals, long};
 use crate::surface::trims::trim::over_frame;
 
@@ -94,7 +95,7 @@ fn of_two(a: &Surface, b: &Surface, origin: Origin, tolerance: &Tolerance) -> Re
     if !box_a.touches(&box_b, tolerance.point) {
         return Ok((Vec::new(), Vec::new()));
     }
-    for closed_form in [flat_faces, flat_and_extruded, flat_and_revolved] {
+    for closed_form in [flat_faces, flat_and_extruded, flat_and_revolved, flat_and_turned] {
         let Some(lines) = closed_form([a, b], [box_a, box_b], origin, tolerance)? else { continue };
         let mut kept = Vec::new();
         for line in lines.curves {
@@ -193,7 +194,7 @@ fn clusters(boxes: &[Box3], point: f64) -> Vec<Box3> {
 }
 
 /// Cubics in a row as a curve, a straight row as a line; `None` where nothing is left.
-fn curve(cubics: &[Nurbs], origin: Origin, tolerance: &Tolerance) -> Result<Option<Curve>> {
+pub(super) fn curve(cubics: &[Nurbs], origin: Origin, tolerance: &Tolerance) -> Result<Option<Curve>> {
     let (Some(first), Some(last)) = (cubics.first(), cubics.last()) else { return Ok(None) };
     let (start, end) = (first.pole(0), last.pole(last.poles.len() - 1));
     let chord = end - start;
