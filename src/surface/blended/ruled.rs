@@ -6,53 +6,54 @@ use crate::base::tolerance::Tolerance;
 use crate::geometry::construct::build::line;
 use crate::network::Chain;
 use crate::surface::blended::coons::{borders, set_kinks};
-use crate::surface::blended::skin_align::{SkinSection, aligned};
+use crate::surface::blended::skin_align::{Read, SkinSection, aligned, join_corners};
 use crate::surface::core::shape::Shape;
 use crate::surface::core::surface::{Parts, Surface};
 use crate::surface::data::flow_words::phrase;
 use crate::surface::data::kind::{Domain, SurfaceKind};
-use crate::surface::rails::rail::Rail;
-use crate::surface::rails::reparam::Map;
 use crate::surface::rails::ring::Ring;
 use crate::surface::rails::side::{Border, Side};
 use crate::surface::shapes::blend::Blend;
 use crate::surface::shapes::rule::Rule;
 use crate::surface::shapes::weights::BlendAxis;
 
-/// The ruled surface S(u, v) = (1 − v) a(u) + v b(u), u the arc-length fraction of both.
+/// The ruled surface S(u, v) = (1 − v) a(u) + v b(u), u the arc-length fraction of both; between corners, where both have equally many.
 ///
 /// `b` is read backwards when that makes the two end lines shorter together (the longer way crosses them). Of closed curves it is read
 /// as a skin reads its sections: the way round that `a` runs, from the start from which lines twist least. Ends that meet are poles.
 /// Returns warnings too (W614).
 pub fn ruled(a: &Chain, b: &Chain, origin: Origin, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
-    if !closed(a, b, tolerance) {
-        return ruled_as_drawn(a, b, origin, tolerance);
-    }
-    let sections = [a, b].map(|chain| SkinSection::Curve(chain.clone()));
-    match aligned(&sections, true, tolerance)?.pop() {
-        Some(read) => between(a, b, read.rail(), origin, tolerance),
-        None => ruled_as_drawn(a, b, origin, tolerance),
-    }
+    let mut read = if closed(a, b, tolerance) {
+        aligned(&[a, b].map(|chain| SkinSection::Curve(chain.clone())), true, tolerance)?
+    } else {
+        as_drawn(a, b, tolerance)
+    };
+    join_corners(&mut read, tolerance);
+    between((a, b), &read, origin, tolerance)
 }
 
-/// The same with closed curves read from where they start, however the lines twist.
+/// The same by arc-length fractions from where curves start, however the lines twist.
 pub fn ruled_as_drawn(a: &Chain, b: &Chain, origin: Origin, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
+    between((a, b), &as_drawn(a, b, tolerance), origin, tolerance)
+}
+
+/// Both from their starts, or the second backwards.
+fn as_drawn(a: &Chain, b: &Chain, tolerance: &Tolerance) -> Vec<Read> {
     let apart = |b0: glam::DVec3, b1: glam::DVec3| a.start().distance_squared(b0) + a.end().distance_squared(b1);
     let reversed = match closed(a, b, tolerance) {
         true => Ring::of(a).runs_against(&Ring::of(b)) == Some(true),
         false => apart(b.end(), b.start()) < apart(b.start(), b.end()),
     };
-    let other = Rail::new(b.clone(), if reversed { Map::reverse() } else { Map::identity() });
-    between(a, b, other, origin, tolerance)
+    vec![Read::whole(a.clone(), false), Read::whole(b.clone(), reversed)]
 }
 
 fn closed(a: &Chain, b: &Chain, tolerance: &Tolerance) -> bool {
     a.is_closed(tolerance) && b.is_closed(tolerance)
 }
 
-fn between(a: &Chain, b: &Chain, other: Rail, origin: Origin, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
+fn between((a, b): (&Chain, &Chain), read: &[Read], origin: Origin, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
     let closed = closed(a, b, tolerance);
-    let rails = vec![Rail::new(a.clone(), Map::identity()), other];
+    let rails = read.iter().map(Read::rail).collect();
     let axis = || BlendAxis::new(vec![0.0, 1.0], Rule::Lagrange);
     let mut blend = Blend::new(axis(), axis(), Vec::new(), rails);
     let mut notes = Vec::new();

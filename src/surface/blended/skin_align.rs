@@ -1,15 +1,15 @@
 //! How sections of a skin are read: each in the direction, and a closed one from the start, in which it twists least against the one
-//! before it.
+//! before it; corners to corners, where all have equally many.
 
 use glam::{DQuat, DVec3};
 
 use crate::base::fault::Result;
 use crate::base::quadrature::gauss_legendre;
-use crate::base::tolerance::{EPSILON, Tolerance};
+use crate::base::tolerance::{EPSILON, Tolerance, WHOLE_NUMBER};
 use crate::base::{job, solve};
 use crate::network::Chain;
 use crate::surface::rails::rail::Rail;
-use crate::surface::rails::reparam::Map;
+use crate::surface::rails::reparam::{Map, Reparam};
 use crate::surface::rails::ring::{PLACES, Ring};
 
 /// Starts tried along a closed section before the best one is made better.
@@ -25,17 +25,22 @@ const ORDER: usize = 3;
 /// A section as it is read.
 #[derive(Clone, Debug)]
 pub enum Read {
-    /// A curve from its start, or backwards.
-    Curve(Chain, bool),
+    /// A curve, and the shares of its length by the surface's parameter.
+    Curve(Chain, Map),
     /// A point.
     Point(DVec3),
 }
 
 impl Read {
-    /// At a share of its length.
+    /// A curve from its start, or backwards.
+    pub fn whole(chain: Chain, turned: bool) -> Self {
+        Self::Curve(chain, if turned { Map::reverse() } else { Map::identity() })
+    }
+
+    /// At a place of the surface's parameter.
     pub fn point(&self, x: f64) -> DVec3 {
         match self {
-            Self::Curve(chain, turned) => read(chain, 0.0, *turned, x),
+            Self::Curve(chain, map) => chain.point(map.value(x)),
             Self::Point(p) => *p,
         }
     }
@@ -43,23 +48,58 @@ impl Read {
     /// The curve that the surface has of it.
     pub fn rail(&self) -> Rail {
         match self {
-            Self::Curve(chain, turned) => Rail::new(chain.clone(), if *turned { Map::reverse() } else { Map::identity() }),
+            Self::Curve(chain, map) => Rail::new(chain.clone(), map.clone()),
             Self::Point(p) => Rail::Point(*p),
         }
     }
+
+    /// Where its corners are, by shares of its length as it is read; nothing of a point.
+    fn corners(&self, tolerance: &Tolerance) -> Option<Vec<f64>> {
+        let Self::Curve(chain, map) = self else { return None };
+        let inside = |f: &f64| *f > WHOLE_NUMBER && *f < 1.0 - WHOLE_NUMBER;
+        let mut own: Vec<f64> = chain.kinks(tolerance).into_iter().filter(inside).map(|f| if map.falls() { 1.0 - f } else { f }).collect();
+        own.sort_by(f64::total_cmp);
+        Some(own)
+    }
 }
 
-/// The sections as they are read; `round`: the curves among them are closed.
+/// Joins corners to corners where all curves have equally many: at the means of their shares. Between them curves run by their lengths.
+pub fn join_corners(all: &mut [Read], tolerance: &Tolerance) {
+    let corners: Vec<Option<Vec<f64>>> = all.iter().map(|read| read.corners(tolerance)).collect();
+    let mut curves = corners.iter().flatten();
+    let Some(count) = curves.next().map(Vec::len).filter(|count| *count > 0) else { return };
+    if curves.any(|own| own.len() != count) {
+        return;
+    }
+    let curves = corners.iter().flatten().count() as f64;
+    let means: Vec<f64> = (0..count).map(|k| corners.iter().flatten().map(|own| own[k]).sum::<f64>() / curves).collect();
+    let with_ends = |inner: &[f64]| [&[0.0][..], inner, &[1.0]].concat();
+    let distinct = |inner: &[f64]| with_ends(inner).windows(2).all(|w| w[1] - w[0] > WHOLE_NUMBER);
+    if !distinct(&means) || !corners.iter().flatten().all(|own| distinct(own)) {
+        return;
+    }
+    for (read, own) in all.iter_mut().zip(&corners) {
+        let (Read::Curve(_, map), Some(own)) = (read, own) else { continue };
+        if own.iter().zip(&means).all(|(own, mean)| (own - mean).abs() <= tolerance.parameter) {
+            continue;
+        }
+        let shares = with_ends(own);
+        let places = if map.falls() { shares.iter().map(|x| 1.0 - x).collect() } else { shares };
+        *map = Map::new(with_ends(&means), places, Reparam::Linear, false);
+    }
+}
+
+/// The sections as they are read, but for their corners; `round`: the curves among them are closed.
 pub fn aligned(sections: &[SkinSection], round: bool, tolerance: &Tolerance) -> Result<Vec<Read>> {
     let mut all: Vec<Read> = Vec::with_capacity(sections.len());
     for section in sections {
         job::poll();
-        let before = all.iter().rev().find_map(|read| if let Read::Curve(chain, turned) = read { Some((chain, *turned)) } else { None });
+        let before = all.iter().rev().find_map(|read| if let Read::Curve(chain, map) = read { Some((chain, map.falls())) } else { None });
         let next = match (section, before) {
             (SkinSection::Point(p), _) => Read::Point(*p),
-            (SkinSection::Curve(chain), None) => Read::Curve(chain.clone(), false),
+            (SkinSection::Curve(chain), None) => Read::whole(chain.clone(), false),
             (SkinSection::Curve(chain), Some(before)) if round => nearest_start(before, chain, tolerance)?,
-            (SkinSection::Curve(chain), Some(before)) => Read::Curve(chain.clone(), nearer_backwards(before.0, before.1, chain)),
+            (SkinSection::Curve(chain), Some(before)) => Read::whole(chain.clone(), nearer_backwards(before.0, before.1, chain)),
         };
         all.push(next);
     }
@@ -68,8 +108,8 @@ pub fn aligned(sections: &[SkinSection], round: bool, tolerance: &Tolerance) -> 
 
 /// Whether the last of some open sections runs against the first one.
 pub fn runs_back(aligned: &[Read]) -> bool {
-    let [Read::Curve(first, turned), .., Read::Curve(last, before)] = aligned else { return false };
-    nearer_backwards(last, *before, first) != *turned
+    let [Read::Curve(first, own), .., Read::Curve(last, before)] = aligned else { return false };
+    nearer_backwards(last, before.falls(), first) != own.falls()
 }
 
 /// v of the sections: sums of their mean distances, from 0 to 1; and their whole, model units. `closed`: the last one is joined to the
@@ -157,14 +197,30 @@ impl<'a> SectionPair<'a> {
     }
 }
 
+/// Starts of a closed section that lie between its corners as the start of the one before does between its own: one for each corner.
+fn starts_between([before, own]: &[Vec<f64>; 2], (back, turned): (bool, bool)) -> Vec<f64> {
+    let read = |f: &f64| if back { (1.0 - f).rem_euclid(1.0) } else { *f };
+    let (first, last) = before.iter().map(read).fold((f64::MAX, 0.0_f64), |(low, high), x| (low.min(x), high.max(x)));
+    // Of the way from the corner before the start to the one after it; a whole way where it is a corner.
+    let share = (1.0 - last) / (1.0 - last + first);
+    let previous = |k: usize| if k == 0 { own[own.len() - 1] - 1.0 } else { own[k - 1] };
+    (0..own.len())
+        .map(|k| {
+            let (low, high) = (previous(k), own[k]);
+            let start = if turned { high - share * (high - low) } else { low + share * (high - low) };
+            start.rem_euclid(1.0)
+        })
+        .collect()
+}
+
 /// A closed section in the direction in which a tube passes both, from the start at which it twists least against the one before, once
 /// both lie in one plane about one centre.
 ///
-/// Corners go to corners: where both have equally many, only these are tried.
+/// Corners go to corners: where both have equally many, only starts that lie between them as the one before does are tried.
 fn nearest_start(before: (&Chain, bool), section: &Chain, tolerance: &Tolerance) -> Result<Read> {
     let corners = [before.0, section].map(|chain| chain.kinks(tolerance).into_iter().filter(|f| *f < 1.0).collect::<Vec<_>>());
     let kinked = corners[0].len() == corners[1].len() && !corners[1].is_empty();
-    let starts = if kinked { corners[1].clone() } else { (0..STARTS).map(|k| k as f64 / STARTS as f64).collect() };
+    let tried: Vec<f64> = (0..STARTS).map(|k| k as f64 / STARTS as f64).collect();
     let (ring, own) = (Ring::of(before.0), Ring::of(section));
     let ring = if before.1 { ring.turned() } else { ring };
     let against = ring.runs_against(&own);
@@ -172,6 +228,7 @@ fn nearest_start(before: (&Chain, bool), section: &Chain, tolerance: &Tolerance)
     for turned in against.map_or(vec![false, true], |turned| vec![turned]) {
         let pair = SectionPair::new(before, section, turned, ring, own);
         let wanted: Vec<DVec3> = (0..PLACES).map(|k| pair.wanted(k as f64 / PLACES as f64)).collect();
+        let starts = if kinked { starts_between(&corners, (before.1, turned)) } else { tried.clone() };
         let off = starts.iter().map(|start| (pair.apart(&wanted, *start), *start));
         let nearer = |a: (f64, f64), b: (f64, f64)| if b.0 < a.0 * (1.0 - tolerance.parameter) { b } else { a };
         let Some((miss, start)) = off.reduce(nearer) else { continue };
@@ -179,7 +236,7 @@ fn nearest_start(before: (&Chain, bool), section: &Chain, tolerance: &Tolerance)
             best = Some((miss, start, pair, wanted));
         }
     }
-    let Some((_, mut start, pair, wanted)) = best else { return Ok(Read::Curve(section.clone(), false)) };
+    let Some((_, mut start, pair, wanted)) = best else { return Ok(Read::whole(section.clone(), false)) };
     if !kinked && start != 0.0 {
         let (step, rule) = (1.0 / STARTS as f64, gauss_legendre(ORDER));
         let slope = |start: f64| pair.slope(start, &corners, &rule);
@@ -194,9 +251,9 @@ fn nearest_start(before: (&Chain, bool), section: &Chain, tolerance: &Tolerance)
     }
     let turned = pair.turned;
     if start * section.length() <= tolerance.point || (1.0 - start) * section.length() <= tolerance.point {
-        return Ok(Read::Curve(section.clone(), turned));
+        return Ok(Read::whole(section.clone(), turned));
     }
-    Ok(Read::Curve(section.slice(start, start, tolerance)?, turned))
+    Ok(Read::whole(section.slice(start, start, tolerance)?, turned))
 }
 
 /// What a skin goes through.

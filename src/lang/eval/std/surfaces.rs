@@ -82,7 +82,7 @@ builtins! {
     /// Surface of straight lines between two curves.
     ///
     /// The second curve is read backwards where that keeps the lines from crossing, a closed one from the start from which they twist
-    /// least.
+    /// least. Lines join equal shares of the lengths; corners go to corners where both have equally many.
     /// ```loft
     /// curve low = line((0, 0, 0), (4m, 0, 0))
     /// curve high = arc((0, 2m, 1m), (4m, 2m, 1m), through: (2m, 2m, 2m))
@@ -93,7 +93,7 @@ builtins! {
         a: Chain,
         /// v = 1.
         b: Chain,
-        /// Whether closed curves are read from where they start: for a twist that is meant.
+        /// Whether lines join equal shares of the lengths from where the curves start: for a twist that is meant.
         as_drawn: bool = "false",
     ) -> Surface = |cx, a, b, as_drawn| {
         let tolerance = cx.tolerance()?;
