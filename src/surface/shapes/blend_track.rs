@@ -20,6 +20,10 @@ const DIGITS: f64 = 3.0;
 /// Places in a piece, −1 to 1, at which it is compared with its curve.
 const COMPARED: [f64; 4] = [-0.996, -0.31, 0.45, 0.998];
 
+/// A curve's second derivatives, as they are bounded over a piece, are at most so many times those its polynomial may have there: a bend that
+/// no compared place sees would be sharper.
+const SHARPER: f64 = 8.0;
+
 /// Curves of one family by their parameter, in parts between knots.
 #[derive(Debug)]
 pub(super) struct Track {
@@ -69,8 +73,8 @@ impl Track {
         (0..pieces).flat_map(|n| places.iter().map(move |x| a + width * (n as f64 + 0.5 * (x + 1.0)))).collect()
     }
 
-    /// The curves over a part; `None` where polynomials do not come near to one of them.
-    pub fn sampled(&self, rails: &[Rail], part: usize, allowed: f64) -> Option<Sampled> {
+    /// The curves over a part; `None` where polynomials do not come near to one of them, by what is allowed and the size of all.
+    pub fn sampled(&self, rails: &[Rail], part: usize, (allowed, size): (f64, f64)) -> Option<Sampled> {
         let mut halvings = 0;
         while halvings <= DEEPEST {
             let (nodes, compared) = (self.places(part, halvings), self.spread(part, halvings, &COMPARED));
@@ -87,7 +91,11 @@ impl Track {
                 points.push(own);
             }
             if worst <= allowed {
-                return Some(Sampled { halvings, points });
+                if self.bends_are_seen(rails, part, halvings, &points, size) {
+                    return Some(Sampled { halvings, points });
+                }
+                halvings += 1;
+                continue;
             }
             if !worst.is_finite() {
                 break;
@@ -95,5 +103,17 @@ impl Track {
             halvings += (math::log10(worst / allowed) / DIGITS).ceil().clamp(1.0, 3.0) as u32;
         }
         None
+    }
+
+    /// Whether no curve can bend much more within a piece than its polynomial does.
+    fn bends_are_seen(&self, rails: &[Rail], part: usize, halvings: u32, points: &[Vec<DVec3>], size: f64) -> bool {
+        let ends = self.spread(part, halvings, &[-1.0 + NEAREST, 1.0 - NEAREST]);
+        rails.iter().zip(points).all(|(rail, points)| {
+            ends.chunks_exact(2).zip(points.chunks_exact(N)).all(|(ends, own)| {
+                let half = 0.5 * (ends[1] - ends[0]);
+                let seen: f64 = through(own).iter().enumerate().skip(2).map(|(j, c)| (j * (j - 1)) as f64 * c.length()).sum();
+                rail.line(ends[0], ends[1]).d2.reach() * half * half <= SHARPER * seen + NEAREST * size
+            })
+        })
     }
 }
