@@ -23,9 +23,7 @@ use lofting::surface::core::plane;
 use lofting::surface::points::control_net::{Net, bezier, nurbs};
 use lofting::surface::swept::extrude;
 use lofting::surface::swept::revolve::{self, Axis};
-use lofting::surface::{
-    Domain, Evaluator, Map, OneSided, Rail, Reparam, Surface, SurfaceKind, Way, bbox, closest, divide, project, ruled, trim,
-};
+use lofting::surface::{Domain, Map, OneSided, Rail, Reparam, Surface, SurfaceKind, Way, bbox, closest, divide, project, ruled, trim};
 use serde_json::Value;
 
 fn p(x: f64, y: f64, z: f64) -> DVec3 {
@@ -484,7 +482,7 @@ fn jumps_of_first_derivatives_are_bounded() {
         assert!(bends.jump.abs() < 1e-9 && bends.mid.iter().chain(&bends.slack).all(|x| x.is_finite()), "{bends:?}");
     }
     let surface = uneven_net(3, 3);
-    let quick = surface.power_form().unwrap();
+    let (quick, ready) = (surface.power_form().unwrap(), surface.prepared());
     let knot = 1.0 / 3.0;
     let mut jumps = 0;
     for k in 0..200_u32 {
@@ -495,7 +493,7 @@ fn jumps_of_first_derivatives_are_bounded() {
         let at = [low, glam::DVec2::new(high.x, low.y + part(3, 17) * across), glam::DVec2::new(low.x + part(2, 19) * half, high.y)];
         let corner = at.map(|at| surface.point(at.x, at.y));
         let normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]).normalize();
-        let bound = chord(Evaluator::new(&surface, Some(&quick)), at, None, corner, f64::INFINITY);
+        let bound = chord(ready.evaluator(), at, None, corner, f64::INFINITY);
         jumps += usize::from(quick.bends((low, high), normal).unwrap().jump > 0.0);
         for (i, j) in (0..=12_u32).flat_map(|i| (0..=12 - i).map(move |j| (f64::from(i) / 12.0, f64::from(j) / 12.0))) {
             let at = at[0] * (1.0 - i - j) + at[1] * i + at[2] * j;
@@ -507,7 +505,7 @@ fn jumps_of_first_derivatives_are_bounded() {
     // Never far more than there is: halving a triangle beside the knot lowers the bound.
     let of = |size: f64| {
         let at = [(-0.4, 0.0), (0.6, 0.1), (-0.1, 1.0)].map(|(x, y)| glam::DVec2::new(knot + x * size, 0.4 + y * size));
-        chord(Evaluator::new(&surface, Some(&quick)), at, None, at.map(|at| surface.point(at.x, at.y)), f64::INFINITY)
+        chord(ready.evaluator(), at, None, at.map(|at| surface.point(at.x, at.y)), f64::INFINITY)
     };
     assert!(of(0.01) < 0.6 * of(0.02), "{} {}", of(0.01), of(0.02));
 }
@@ -690,7 +688,7 @@ fn forty_sliver_patches_leave_the_grid_unchanged() {
 #[test]
 fn the_surface_over_sides_is_as_near_as_their_bound_says() {
     let surface = uneven_net(3, 3);
-    let quick = surface.power_form().unwrap();
+    let ready = surface.prepared();
     let mut near = 0;
     for k in 0..200_u32 {
         let part = |n: u32, of: u32| f64::from(k * n % of) / f64::from(of);
@@ -709,12 +707,12 @@ fn the_surface_over_sides_is_as_near_as_their_bound_says() {
         });
         let most = truth.into_iter().fold(0.0, f64::max);
         for wanted in [f64::INFINITY, 1.1 * most] {
-            let bound = distance(Evaluator::new(&surface, Some(&quick)), sides.map(Some), corner, wanted);
+            let bound = distance(ready.evaluator(), sides.map(Some), corner, wanted);
             assert!(most <= bound * (1.0 + 1e-9) + 1e-12, "{most} against {bound}");
             near += usize::from(bound <= 1.1 * most);
         }
         // A side that is not asked for is not looked at.
-        let first = distance(Evaluator::new(&surface, Some(&quick)), [Some(sides[0]), None, None], corner, f64::INFINITY);
+        let first = distance(ready.evaluator(), [Some(sides[0]), None, None], corner, f64::INFINITY);
         assert!(first >= truth[0] * (1.0 - 1e-9) - 1e-12);
     }
     assert!(near > 150, "{near}");

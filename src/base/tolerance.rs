@@ -44,6 +44,8 @@ pub const BESIDE: f64 = 1e-3;
 pub const SLIVER: f64 = 1e-10;
 /// Least interval, as a share of the domain, over which a direction is taken where derivatives vanish.
 pub const NUDGE: f64 = 1e-6;
+/// A tangent shorter than this share of the size is not taken from a polynomial that is as near as rounding: its direction would be off.
+pub const SHORT_TANGENT: f64 = 1e-5;
 /// Step of a Newton iteration, as a share of the piece, after which one more would change nothing.
 pub const NEWTON_STEP: f64 = 1e-8;
 /// Two sums of areas in (u, v) that differ by no more than this share are of one region.

@@ -40,7 +40,7 @@ impl Chart {
         // Parameters that run together are not sheared apart.
         let c = if rest > EPSILON * g { rest.sqrt() } else { g.sqrt() };
         (a.is_finite() && c.is_finite() && a > 0.0 && c > 0.0).then(|| Self {
-            surface: surface.prepared(),
+            surface: surface.quick(),
             domain: surface.ground(),
             closed: if surface.domain() == Domain::Loop { surface.closed() } else { (false, false) },
             a,

@@ -153,7 +153,7 @@ pub fn places(input: &Input, face: &Face, side: usize, lengths: &[f64]) -> Vec<(
 fn along_border(surface: &Surface, side: usize, total: f64, lengths: &[f64]) -> Vec<(f64, f64)> {
     match (surface.side(side), surface.border_line(side)) {
         (Side::Chain { from, to, .. }, _) => {
-            let prepared = surface.prepared();
+            let prepared = surface.quick();
             let place = |s: &f64| prepared.evaluator().border_place(side, from + (to - from) * (s / total)).unwrap_or_default();
             lengths.iter().map(place).collect()
         }

@@ -32,7 +32,7 @@ pub struct FaceInput<'a> {
 pub(crate) fn outlined(context: &FaceInput, face: &Face) -> Option<(FaceBorder, Chart, Outline)> {
     let surface = &context.input.model.surfaces[face.surface.index()].surface;
     // Converted once for the border and the chart.
-    let _power_form = surface.power_form();
+    let _ready = surface.quick();
     let mut border = border(context, face);
     let chart = Chart::new(surface, border.uv.iter().copied())?;
     if face.near > context.input.tolerance.point {

@@ -46,8 +46,8 @@ pub fn of_face(surface: &Surface, geometry: &FaceGeometry, triangles: &[[u32; 3]
                 return of_rows;
             }
             let GridList { uv, ids, border, triangles } = of_grid.listed();
-            let power_form = surface.power_form();
-            let evaluator = Evaluator::new(surface, power_form.as_ref());
+            let prepared = surface.quick();
+            let evaluator = prepared.evaluator();
             let listed = ListedTriangles { evaluator, uv: &uv, ids: &ids, border, nodes, halves: &triangles, tolerance };
             listed.with_cut_off(if is_straight { of_rows } else { listed.largest() })
         }
@@ -61,8 +61,8 @@ pub fn of_face(surface: &Surface, geometry: &FaceGeometry, triangles: &[[u32; 3]
                 }
             });
             let (uv, ids) = (listed.listed_uv(), listed.listed_ids());
-            let power_form = surface.power_form();
-            let evaluator = Evaluator::new(surface, power_form.as_ref());
+            let prepared = surface.quick();
+            let evaluator = prepared.evaluator();
             let border = if let FaceNodes::Free(free, _) = listed { free.border } else { uv.len() };
             let listed = ListedTriangles { evaluator, uv: &uv, ids: &ids, border, nodes, halves: &halves, tolerance };
             listed.with_cut_off(listed.largest())

@@ -25,7 +25,7 @@ struct TriangleSettings {
     max_divisions: u32,
     /// How often a triangle that stands on edge is cut into four.
     max_parts: u32,
-    /// A bound that is larger than this times the distance wanted is not refined by parts, where derivatives cost hundreds of evaluations.
+    /// A bound that is larger than this times the distance wanted is not refined by parts, but where one polynomial a span makes that cheap.
     max_excess: f64,
     /// Width in (u, v) from which a triangle goes round a tip.
     min_width_round_tip: f64,
@@ -74,7 +74,7 @@ fn above_plane(evaluator: Evaluator, uv: [DVec2; 3], on: DVec3, normal: DVec3, w
     let plane = Plane { on, normal };
     let bends = bends_of(evaluator, uv, normal);
     let first = bends.map_or(f64::INFINITY, |bends| over_sides(&bends, uv, width(uv)));
-    let costly = !evaluator.has_power_form();
+    let costly = !evaluator.has_power_form() || evaluator.has_ranges();
     if first <= wanted || costly && first > SETTINGS.max_excess * wanted {
         return first;
     }

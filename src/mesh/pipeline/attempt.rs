@@ -35,8 +35,7 @@ use crate::mesh::size::sizing::{MOST, Sizing};
 use crate::mesh::size::uneven;
 use crate::mesh::tri::too_large::refuse_large;
 use crate::mesh::verify::{face_check, face_fault, turned};
-use crate::surface::Domain;
-use crate::surface::core::power_form::PowerForm;
+use crate::surface::{Domain, PreparedSurface};
 
 /// How often a mesh is divided anew.
 struct AttemptSettings {
@@ -53,14 +52,14 @@ struct AttemptSettings {
 
 const ATTEMPT: AttemptSettings = AttemptSettings { max_refinements: 40, max_border_searches: 24, max_halvings: 6, max_power_forms: 64 };
 
-/// The power forms of the surfaces of faces that are certainly free under limits.
-fn power_forms(input: &Input, layout: &Layout, limits: &Limits) -> Vec<PowerForm> {
+/// The surfaces of faces that are certainly free under limits, made ready once.
+fn power_forms(input: &Input, layout: &Layout, limits: &Limits) -> Vec<PreparedSurface> {
     if limits.chord.is_none() && limits.angle.is_none() {
         return Vec::new();
     }
     let surface = |face: &Face| &input.model.surfaces[face.surface.index()].surface;
     let free = |face: &&Face| face.method.is_free() || surface(face).domain() == Domain::Loop;
-    layout.faces.iter().filter(free).take(ATTEMPT.max_power_forms).filter_map(|face| surface(face).power_form()).collect()
+    layout.faces.iter().filter(free).take(ATTEMPT.max_power_forms).map(|face| surface(face).quick()).collect()
 }
 
 /// The finished mesh of some faces, without their layout.

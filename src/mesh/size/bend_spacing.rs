@@ -62,8 +62,8 @@ fn of_face(input: &Input, layout: &Layout, own: &Face, rows: &[SegmentBeside], l
     if !own.free || surface.is_flat() {
         return Vec::new();
     }
-    let power_form = surface.power_form();
-    let evaluator = Evaluator::new(surface, power_form.as_ref());
+    let prepared = surface.prepared();
+    let evaluator = prepared.evaluator();
     let mut found = Vec::new();
     let apart = |segment: usize| layout.length(segment) / PLACES as f64;
     // Cells halve by twos and fit best where a curve has one length; `display` joins them again.

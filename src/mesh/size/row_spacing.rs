@@ -16,7 +16,6 @@ use crate::mesh::size::least_counts::MAX_COUNT;
 use crate::mesh::size::opposite_segments::{Opposite, OppositeSegments};
 use crate::mesh::size::row_bends::RowDirection;
 use crate::mesh::size::spacing_solver::SpacingInput;
-use crate::surface::Evaluator;
 
 /// When rows are uneven.
 struct RowSettings {
@@ -153,7 +152,7 @@ fn demands(input: &Input, layout: &Layout, given: &SpacingInput, rows: &Rows) ->
     let side = sides(face, rows.direction).map(|side| side.length).fold(0.0, f64::max);
     let by_size = (face.size.0 / side).min(1.0);
     let surface = &input.model.surfaces[face.surface.index()].surface;
-    let Some(found) = RowDirection::new(input, Evaluator::new(surface, None), given.limits, face, rows.direction) else {
+    let Some(found) = RowDirection::new(input, surface.evaluator(), given.limits, face, rows.direction) else {
         return RowDemands { spacing: BorderSpacing::even(by_size), even: 1.0 / by_size };
     };
     let profile = found.profile();

@@ -64,11 +64,6 @@ impl StableHash for PreparedSurface {
 }
 
 impl<'a> Evaluator<'a> {
-    /// A surface and its own power form.
-    pub fn new(surface: &'a Surface, power_form: Option<&'a PowerForm>) -> Self {
-        Self { surface, power_form }
-    }
-
     /// The surface.
     pub fn surface(self) -> &'a Surface {
         self.surface

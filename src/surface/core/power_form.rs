@@ -15,7 +15,6 @@ use crate::base::work;
 use crate::surface::core::shape::Shape;
 use crate::surface::core::surface::Surface;
 use crate::surface::data::jet::Jet2;
-use crate::surface::data::kind::SurfaceKind;
 use crate::surface::data::one_sided::OneSided;
 use crate::surface::shapes::blend::Blend;
 use crate::surface::shapes::blend_powers::BlendPowers;
@@ -76,10 +75,12 @@ impl Surface {
         Some(PowerForm { surface: self.clone(), form: Form::Net(self.ready().net.take(|| Some(Powers::new(net)))?) })
     }
 
-    /// The blend of curves made ready; `None` for surfaces that are none, and for planes with a map, which are as cheap by themselves.
+    /// The blend of curves made ready; `None` for surfaces that are none, for planes with a map and for nets of
+    /// straight lines, which are as cheap by themselves.
     pub(super) fn blend_form(&self) -> Option<PowerForm> {
         let Shape::Blend(blend) = &self.parts().shape else { return None };
-        if self.kind() == SurfaceKind::Plane {
+        let mut rails = blend.along_u().iter().chain(blend.along_v());
+        if self.is_in_plane() || rails.all(|rail| rail.is_straight(0.0, 1.0)) {
             return None;
         }
         Some(PowerForm { surface: self.clone(), form: Form::Blend(self.ready().blend.take(|| BlendPowers::new(blend))?) })

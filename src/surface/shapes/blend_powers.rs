@@ -12,7 +12,7 @@ use glam::{DVec2, DVec3};
 
 use crate::base::bbox::Box3;
 use crate::base::range::Interval3;
-use crate::base::tolerance::{EPSILON, LENGTH_ACCURACY, NEAREST, SLIVER};
+use crate::base::tolerance::{EPSILON, LENGTH_ACCURACY, NEAREST, SHORT_TANGENT, SLIVER};
 use crate::surface::data::jet::Jet2;
 use crate::surface::data::one_sided::OneSided;
 use crate::surface::rails::rail::Rail;
@@ -47,6 +47,8 @@ pub(crate) struct BlendPowers {
     allowed: f64,
     /// Diagonal of all curves, model units.
     size: f64,
+    /// Shortest first derivative that is taken from polynomials, model units.
+    shortest: f64,
 }
 
 /// A place in a direction: part, cell, place in the cell from −1 to 1 and one over its half width.
@@ -73,7 +75,7 @@ impl BlendPowers {
             let count = powers[of].terms.len() * tracks[along].parts.len();
             std::iter::repeat_with(OnceLock::new).take(count).collect()
         });
-        Some(Self { tracks, powers, columns, allowed: ACCURACY * size + 0.25 * EPSILON * furthest, size })
+        Some(Self { tracks, powers, columns, allowed: ACCURACY * size + 0.25 * EPSILON * furthest, size, shortest: SHORT_TANGENT * size })
     }
 
     /// Lines of u and of v at which first derivatives jump.
@@ -157,7 +159,7 @@ impl BlendPowers {
         Some(first + value(pieces, u.s, y))
     }
 
-    /// Point and all derivatives.
+    /// Point and all derivatives; `None` too where a tangent is short, as beside a pole: its direction would be that of rounding.
     pub(crate) fn jet(&self, blend: &Blend, u: f64, v: f64) -> Option<Jet2> {
         let (u, v) = (self.place(0, u), self.place(1, v));
         let (pieces, x, by) = self.column(blend, &v, &u, false)?;
@@ -173,7 +175,7 @@ impl BlendPowers {
             jet.duv += dsy * (u.by * by);
             jet.dvv += dyy * (by * by);
         }
-        Some(jet)
+        (jet.du.length_squared().min(jet.dv.length_squared()) > self.shortest * self.shortest).then_some(jet)
     }
 
     /// Second derivatives along a unit vector over a box of u and v, jumps of first ones inside not counted.
