@@ -106,8 +106,6 @@ impl Step<'_> {
         if !std::mem::take(&mut self.also).is_empty() {
             return Err(defect("its surface crosses its axis, and it is ambiguous which part is meant"));
         }
-        // The net of an extruded surface has the direction first, the file the curve.
-        let distance = if matches!(base, Base::Swept { .. }) { -distance } else { distance };
         let reach = base.reach(&around);
         let (base, folds) = base.beside(distance, &reach, self.origin, &self.tolerance)?;
         if folds {
@@ -170,8 +168,9 @@ impl Step<'_> {
         let (first, last) = own.stretch(profile.start(), direction);
         let (low, high) = (low - last.max(0.0), high - first.min(0.0));
         let room = BEYOND * (high - low);
-        let by = direction * (high - low + 2.0 * room);
-        let start = crate::geometry::Motion::translation(direction * (low - room));
+        // The net has the direction first, the file the curve: from the far end back, so that normals are those of the file.
+        let by = direction * -(high - low + 2.0 * room);
+        let start = crate::geometry::Motion::translation(direction * (high + room));
         Ok(Base::Swept { profile: profile.moved(&start), by })
     }
 

@@ -53,8 +53,9 @@ impl Step<'_> {
             b"PLANE" => {
                 let frame = self.frame(row.entity(1)?)?;
                 let ((u0, u1), (v0, v1)) = (ordered(u0 * length, u1 * length), ordered(v0 * length, v1 * length));
-                let at = |u: f64| frame.at + frame.x * u + frame.y * v0;
-                Ok(Base::Swept { profile: build::line(at(u0), at(u1), self.origin)?, by: frame.y * (v1 - v0) })
+                // From the far end back, as below.
+                let at = |u: f64| frame.at + frame.x * u + frame.y * v1;
+                Ok(Base::Swept { profile: build::line(at(u0), at(u1), self.origin)?, by: frame.y * (v0 - v1) })
             }
             b"CYLINDRICAL_SURFACE" | b"CONICAL_SURFACE" => {
                 let frame = self.frame(row.entity(1)?)?;
@@ -77,8 +78,9 @@ impl Step<'_> {
                 let of = self.course(row.entity(1)?, 0)?;
                 let by = self.vector(row.entity(2)?)?;
                 let (v0, v1) = ordered(v0, v1);
-                let profile = self.part_of(&of, u0, u1)?.moved(&Motion::translation(by * v0));
-                Ok(Base::Swept { profile, by: by * (v1 - v0) })
+                // The net has the direction first, the file the curve: from the far end back, so that normals are those of the file.
+                let profile = self.part_of(&of, u0, u1)?.moved(&Motion::translation(by * v1));
+                Ok(Base::Swept { profile, by: by * (v0 - v1) })
             }
             b"SURFACE_OF_REVOLUTION" => {
                 let of = self.course(row.entity(1)?, 0)?;
