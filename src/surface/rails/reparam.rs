@@ -15,6 +15,18 @@ pub enum Reparam {
     Linear,
 }
 
+/// A cubic rises all along a piece where its slopes at the ends are at most so many times the secant [Fritsch & Carlson 1980].
+const STEEPEST: f64 = 3.0;
+
+/// What a map runs over at an even rate.
+#[derive(Clone, Debug, Default)]
+pub struct Even {
+    /// One per piece.
+    pub pieces: Vec<bool>,
+    /// Nodes at which the rate may jump between even pieces: corners.
+    pub jumps: Vec<usize>,
+}
+
 /// Value and two derivatives of a map.
 pub type Scalar = [f64; 3];
 
@@ -23,7 +35,8 @@ pub type Scalar = [f64; 3];
 pub struct Map {
     x: Vec<f64>,
     y: Vec<f64>,
-    slope: Vec<f64>,
+    /// At both ends of each piece; nothing of a linear map.
+    slope: Vec<(f64, f64)>,
     linear: bool,
 }
 
@@ -34,6 +47,13 @@ impl Map {
     ///
     /// `periodic` joins the slopes of the two ends. A monotone cubic through two nodes is the straight line.
     pub fn new(x: Vec<f64>, y: Vec<f64>, how: Reparam, periodic: bool) -> Self {
+        let even = vec![false; x.len() - 1];
+        Self::even_over(x, y, how, &Even { pieces: even, jumps: Vec::new() }, periodic)
+    }
+
+    /// The same at an even rate over some pieces: where lines are straight, what is blended between them is straight only if all of them are
+    /// run over evenly. A piece beside one leaves it at its rate, or at three times its own where that is less.
+    pub fn even_over(x: Vec<f64>, y: Vec<f64>, how: Reparam, even: &Even, periodic: bool) -> Self {
         let slope = if how == Reparam::Linear { Vec::new() } else { slopes(&x, &y, periodic) };
         // Nodes on a line up to rounding need no cubic: most maps are the identity.
         let straight = slope.windows(2).all(|w| (w[1] - w[0]).abs() <= EPSILON * (w[0].abs() + w[1].abs()))
@@ -41,6 +61,7 @@ impl Map {
         let (x, y, slope) = if straight && x.len() > 2 && how == Reparam::Smooth {
             (vec![x[0], x[x.len() - 1]], vec![y[0], y[y.len() - 1]], Vec::new())
         } else {
+            let slope = if slope.is_empty() { Vec::new() } else { of_pieces(&slope, &secants(&x, &y), even, periodic) };
             (x, y, slope)
         };
         let linear = how == Reparam::Linear || x.len() == 2;
@@ -74,7 +95,7 @@ impl Map {
             let y = if x - x0 < x1 - x { y0 + (x - x0) * secant } else { y1 - (x1 - x) * secant };
             return [y, secant, 0.0];
         }
-        let (a, b) = (self.slope[k], self.slope[k + 1]);
+        let (a, b) = self.slope[k];
         // Newton form of the cubic Hermite piece from the nearer node.
         if x - x0 <= x1 - x {
             let (c, d) = ((3.0 * secant - 2.0 * a - b) / h, (a + b - 2.0 * secant) / (h * h));
@@ -155,6 +176,23 @@ impl Map {
     pub fn breaks(&self) -> &[f64] {
         &self.x[1..self.x.len() - 1]
     }
+}
+
+/// Slopes at both ends of each piece from those at the nodes.
+fn of_pieces(nodes: &[f64], secant: &[f64], even: &Even, periodic: bool) -> Vec<(f64, f64)> {
+    let n = secant.len();
+    // The slope of piece `k` at a node that it has in common with piece `other`.
+    let at = |k: usize, node: usize, other: Option<usize>| match other {
+        _ if even.pieces[k] && other.is_none_or(|other| !even.pieces[other] || even.jumps.contains(&node)) => secant[k],
+        Some(other) if !even.pieces[k] && even.pieces[other] && !even.jumps.contains(&node) => {
+            let most = STEEPEST * secant[k];
+            if secant[other].abs() < most.abs() { secant[other] } else { most }
+        }
+        _ => nodes[node],
+    };
+    let before = |k: usize| if k > 0 { Some(k - 1) } else { periodic.then_some(n - 1) };
+    let after = |k: usize| if k + 1 < n { Some(k + 1) } else { periodic.then_some(0) };
+    (0..n).map(|k| (at(k, k, before(k)), at(k, (k + 1) % if periodic { n } else { n + 1 }, after(k)))).collect()
 }
 
 fn secants(x: &[f64], y: &[f64]) -> Vec<f64> {

@@ -17,7 +17,7 @@ use crate::surface::data::kind::SurfaceKind;
 use crate::surface::data::one_sided::OneSided;
 use crate::surface::faults::{BorderFault, SweepFault};
 use crate::surface::rails::rail::Rail;
-use crate::surface::rails::reparam::{Map, Reparam};
+use crate::surface::rails::reparam::{Even, Map, Reparam};
 use crate::surface::shapes::blend::Blend;
 use crate::surface::shapes::rule::Rule;
 use crate::surface::shapes::weights::BlendAxis;
@@ -66,13 +66,14 @@ pub(crate) fn surface(net: SweepNet, input: &Input, tolerance: &Tolerance) -> Re
         .map(|r| Rail::new(r.chain.clone(), Map::new(net.breaks.clone(), r.breaks.clone(), Reparam::Smooth, net.closed.1)))
         .collect();
     // Guides by break, then lines through the sections where there is none.
+    let even = net.even(tolerance);
     let mut lines: Vec<(usize, Rail)> = Vec::new();
     for (&j, &place) in net.order.iter().zip(&net.places) {
-        lines.push((place, guide_rail(&net, j, &nodes_u, &mut notes, tolerance)?));
+        lines.push((place, guide_rail((&net, &even), j, &nodes_u, &mut notes, tolerance)?));
     }
     let last = net.breaks.len() - 1;
     for place in missing(&lines, &net, last) {
-        lines.push((place, through(&net, place, &nodes_u, input.origin, tolerance)?));
+        lines.push((place, through((&net, &even), place, &nodes_u, input.origin, tolerance)?));
     }
     lines.sort_by_key(|l| l.0);
     let mut nodes_v: Vec<f64> = lines.iter().map(|l| net.breaks[l.0]).collect();
@@ -120,12 +121,11 @@ fn local(
 }
 
 /// A guide between the first and the last station; N638 for what was added to it, N609 for what is left out.
-fn guide_rail(net: &SweepNet, j: usize, nodes: &[f64], notes: &mut Vec<Fault>, tolerance: &Tolerance) -> Result<Rail> {
+fn guide_rail((net, even): (&SweepNet, &Even), j: usize, nodes: &[f64], notes: &mut Vec<Fault>, tolerance: &Tolerance) -> Result<Rail> {
     let guide = &net.guides[j];
-    let mut fractions: Vec<f64> = net.ribs.iter().map(|r| r.on_guides[j]).collect();
+    let mut fractions = net.on_guide(j);
     if net.closed.0 {
-        fractions.push(1.0);
-        return Ok(Rail::new(guide.chain.clone(), Map::new(nodes.to_vec(), fractions, Reparam::Smooth, true)));
+        return Ok(Rail::new(guide.chain.clone(), Map::even_over(nodes.to_vec(), fractions, Reparam::Smooth, even, true)));
     }
     let n = fractions.len() - 1;
     let (from, to) = (fractions[0], fractions[n]);
@@ -145,7 +145,7 @@ fn guide_rail(net: &SweepNet, j: usize, nodes: &[f64], notes: &mut Vec<Fault>, t
     let chain = if all { guide.chain.clone() } else { guide.chain.slice(from, to, tolerance)? };
     fractions.iter_mut().for_each(|f| *f = if all { *f } else { (*f - from) / (to - from) });
     (fractions[0], fractions[n]) = (0.0, 1.0);
-    Ok(Rail::new(chain, Map::new(nodes.to_vec(), fractions, Reparam::Smooth, false)))
+    Ok(Rail::new(chain, Map::even_over(nodes.to_vec(), fractions, Reparam::Smooth, even, false)))
 }
 
 /// Breaks at which a line through the sections is wanted: open ends, and enough for a closed direction.
@@ -183,7 +183,7 @@ fn missing(lines: &[(usize, Rail)], net: &SweepNet, last: usize) -> Vec<usize> {
 
 /// A line through the sections at one of their common breaks: a spline, in parts where the main guide has a corner or is straight; a
 /// pole where they all meet there.
-fn through(net: &SweepNet, place: usize, nodes: &[f64], origin: Origin, tolerance: &Tolerance) -> Result<Rail> {
+fn through((net, even): (&SweepNet, &Even), place: usize, nodes: &[f64], origin: Origin, tolerance: &Tolerance) -> Result<Rail> {
     let points: Vec<DVec3> = net.ribs.iter().map(|r| r.chain.point(r.breaks[place])).collect();
     if points.iter().all(|p| tolerance.same_point(points[0], *p)) {
         return Ok(Rail::Point(points[0]));
@@ -197,7 +197,7 @@ fn through(net: &SweepNet, place: usize, nodes: &[f64], origin: Origin, toleranc
     }
     let n = points.len() - 1;
     let (mut parts, mut lengths) = (Vec::new(), vec![0.0]);
-    for part in parts_of(net, &points, tolerance) {
+    for part in parts_of(even, &points, tolerance) {
         let run = &points[part.from..=part.to];
         let curve = match run {
             [a, .., b] if part.straight || run.len() == 2 => line(*a, *b, origin)?,
@@ -218,7 +218,7 @@ fn through(net: &SweepNet, place: usize, nodes: &[f64], origin: Origin, toleranc
         [one] => one.clone(),
         _ => Chain::join(&parts, origin, tolerance)?,
     };
-    Ok(Rail::new(chain, Map::new(nodes.to_vec(), fractions, Reparam::Smooth, false)))
+    Ok(Rail::new(chain, Map::even_over(nodes.to_vec(), fractions, Reparam::Smooth, even, false)))
 }
 
 /// A part of a line through sections.
@@ -231,16 +231,13 @@ struct Part {
     ends: (Ends, Ends),
 }
 
-/// The parts of a line through points at the stations: they end at corners of the main guide, and where it ceases to be straight and the
+/// The parts of a line through points at the stations: they end at corners of all guides, and where these cease to be straight and the
 /// points, too, lie on a line.
-fn parts_of(net: &SweepNet, points: &[DVec3], tolerance: &Tolerance) -> Vec<Part> {
+fn parts_of(even: &Even, points: &[DVec3], tolerance: &Tolerance) -> Vec<Part> {
     /// Points are on a line to so many roundings of a coordinate.
     const ROUNDINGS: f64 = 64.0;
-    let main = &net.guides[0].chain;
-    let (kinks, rail) = (main.kinks(tolerance), Rail::new(main.clone(), Map::identity()));
-    let n = points.len() - 1;
-    let corner = |k: usize| kinks.iter().any(|f| (f - net.ribs[k].w).abs() <= tolerance.parameter);
-    let straight: Vec<bool> = (0..n).map(|k| rail.is_straight(net.ribs[k].w, net.ribs[k + 1].w)).collect();
+    let (n, straight) = (points.len() - 1, &even.pieces);
+    let corner = |k: usize| even.jumps.contains(&k);
     let stops = (1..n).filter(|k| corner(*k) || straight[*k - 1] != straight[*k]);
     let stops: Vec<usize> = std::iter::once(0).chain(stops).chain(std::iter::once(n)).collect();
     let on_line = |from: usize, to: usize| {

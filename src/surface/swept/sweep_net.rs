@@ -8,6 +8,8 @@ use crate::base::origin::Origin;
 use crate::base::tolerance::{NUDGE, Tolerance};
 use crate::network::Chain;
 use crate::surface::faults::SweepFault;
+use crate::surface::rails::rail::Rail;
+use crate::surface::rails::reparam::{Even, Map};
 use crate::surface::swept::laws::{Law, Main, Station, check_section, plane_normal, samples};
 use crate::surface::swept::marks::Marks;
 use crate::surface::swept::ribs::Given;
@@ -54,6 +56,25 @@ pub struct SweepNet {
     pub closed: (bool, bool),
     /// W639 and W644.
     pub notes: Vec<Fault>,
+}
+
+impl SweepNet {
+    /// Fractions of a guide at the stations, and at its end where u is closed.
+    pub fn on_guide(&self, j: usize) -> Vec<f64> {
+        let own = self.ribs.iter().map(|rib| rib.on_guides[j]);
+        own.chain(self.closed.0.then_some(1.0)).collect()
+    }
+
+    /// Spans between stations over which all guides are straight, and stations at which all of them have a corner.
+    pub fn even(&self, tolerance: &Tolerance) -> Even {
+        let rails: Vec<Rail> = self.guides.iter().map(|guide| Rail::new(guide.chain.clone(), Map::identity())).collect();
+        let places: Vec<Vec<f64>> = (0..rails.len()).map(|j| self.on_guide(j)).collect();
+        let kinks: Vec<Vec<f64>> = self.guides.iter().map(|guide| guide.chain.kinks(tolerance)).collect();
+        let n = places[0].len();
+        let corner = |k: usize| (0..rails.len()).all(|j| kinks[j].iter().any(|f| (f - places[j][k]).abs() <= NUDGE));
+        let straight = |k: usize| (0..rails.len()).all(|j| rails[j].is_straight(places[j][k], places[j][k + 1]));
+        Even { pieces: (0..n - 1).map(straight).collect(), jumps: (0..n).filter(|k| corner(*k)).collect() }
+    }
 }
 
 /// Makes the net, or says which guide is too short for it.
