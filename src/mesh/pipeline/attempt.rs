@@ -53,7 +53,7 @@ struct AttemptSettings {
 const ATTEMPT: AttemptSettings = AttemptSettings { max_refinements: 40, max_border_searches: 24, max_halvings: 6, max_power_forms: 64 };
 
 /// The surfaces of faces that are certainly free under limits, made ready once.
-fn power_forms(input: &Input, layout: &Layout, limits: &Limits) -> Vec<PreparedSurface> {
+fn made_ready(input: &Input, layout: &Layout, limits: &Limits) -> Vec<PreparedSurface> {
     if limits.chord.is_none() && limits.angle.is_none() {
         return Vec::new();
     }
@@ -123,7 +123,7 @@ struct Attempt<'a> {
 /// Divides, refines and fills.
 pub(crate) fn attempt(input: &Input, layout: &mut Layout, size: f64, cache: Option<&CacheView>, job: &Job) -> Result<FinishedMesh> {
     let limits = Limits::of(input);
-    let _power_forms = power_forms(input, layout, &limits);
+    let _ready = made_ready(input, layout, &limits);
     let (sizing, demands, relations) = begin(input, layout, size, cache, job)?;
     let mut attempt = Attempt {
         input,

@@ -23,12 +23,13 @@ use crate::surface::shapes::weights::BlendAxis;
 /// as a skin reads its sections: the way round that `a` runs, from the start from which lines twist least. Ends that meet are poles.
 /// Returns warnings too (W614).
 pub fn ruled(a: &Chain, b: &Chain, origin: Origin, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
-    let mut read = if closed(a, b, tolerance) {
+    let read = if closed(a, b, tolerance) {
         aligned(&[a, b].map(|chain| SkinSection::Curve(chain.clone())), true, tolerance)?
     } else {
-        as_drawn(a, b, tolerance)
+        let mut read = as_drawn(a, b, tolerance);
+        join_corners(&mut read, tolerance);
+        read
     };
-    join_corners(&mut read, tolerance);
     between((a, b), &read, origin, tolerance)
 }
 

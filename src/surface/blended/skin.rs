@@ -10,7 +10,7 @@ use crate::network::Chain;
 use crate::network::fault::NetFault;
 use crate::surface::blended::family::evenly;
 use crate::surface::blended::gordon::{CurveNet, Named, blended};
-use crate::surface::blended::skin_align::{Read, SkinSection, aligned, distances, join_corners, runs_back};
+use crate::surface::blended::skin_align::{Read, SkinSection, aligned, distances, runs_back};
 use crate::surface::blended::skin_ends::{Leaving, Spanned, ended};
 use crate::surface::blended::skin_fit::fitted;
 use crate::surface::core::surface::Surface;
@@ -82,8 +82,7 @@ pub fn said_well(sections: &[SkinSection], closed: bool, tolerance: &Tolerance) 
 pub fn skin(sections: &[SkinSection], settings: &SkinSettings, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
     let chains: Vec<Chain> = sections.iter().filter_map(|s| if let SkinSection::Curve(c) = s { Some(c.clone()) } else { None }).collect();
     let round = chains.iter().all(|c| c.is_closed(tolerance));
-    let mut aligned = aligned(sections, round, tolerance)?;
-    join_corners(&mut aligned, tolerance);
+    let aligned = aligned(sections, round, tolerance)?;
     if settings.closed && !round && runs_back(&aligned) {
         let (found, range) = ("sections of which the last one runs against the first one".to_owned(), "`false` for them".to_owned());
         return Err(ValueFault::OutsideRange { argument: "closed", found, range }.into());

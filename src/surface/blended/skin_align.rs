@@ -89,7 +89,7 @@ pub fn join_corners(all: &mut [Read], tolerance: &Tolerance) {
     }
 }
 
-/// The sections as they are read, but for their corners; `round`: the curves among them are closed.
+/// The sections as they are read; `round`: the curves among them are closed.
 pub fn aligned(sections: &[SkinSection], round: bool, tolerance: &Tolerance) -> Result<Vec<Read>> {
     let mut all: Vec<Read> = Vec::with_capacity(sections.len());
     for section in sections {
@@ -103,6 +103,7 @@ pub fn aligned(sections: &[SkinSection], round: bool, tolerance: &Tolerance) -> 
         };
         all.push(next);
     }
+    join_corners(&mut all, tolerance);
     Ok(all)
 }
 

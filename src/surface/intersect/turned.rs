@@ -46,9 +46,11 @@ struct Turned {
     size: f64,
 }
 
-/// Returns the curves in which the plane of a flat face meets a face of revolution, cut at parallelograms and at the borders of the face
-/// of revolution but not at loops, and points where they touch: circles and copies of the profile exactly, other curves within a quarter
-/// of the tolerance. `None` for other faces, for profiles outside of a half plane through the axis, and where a plane runs along the face.
+/// Returns the curves in which a flat face and a face of revolution meet, and the points where they only touch. Circles and copies of the
+/// profile are exact, other curves are within a quarter of the tolerance.
+///
+/// Curves end at the borders of the face of revolution, and of the flat face where that is a parallelogram; loops are left to the caller.
+/// `None` for other faces, for a profile that leaves the half plane through the axis, and for a plane that contains a piece of the face.
 ///
 /// Faces know their loops in (u, v); one at most is unbounded. Fails where a curve that meets a plane does.
 pub(crate) fn flat_and_turned(faces: [&Surface; 2], boxes: [Box3; 2], origin: Origin, tolerance: &Tolerance) -> Result<Option<Lines>> {

@@ -60,7 +60,7 @@ pub(super) fn fitted(
 }
 
 impl Branch<'_> {
-    /// y² without what it is off at the ends.
+    /// y², with the residuals at the ends taken off in proportion, so that it is 0 there.
     fn square(&self, v: f64, place: &Place) -> f64 {
         let [from, to] = &self.span.ends;
         let share = (v - from.v) / (to.v - from.v);
@@ -71,7 +71,7 @@ impl Branch<'_> {
         DVec2::new(place.s, self.side * self.square(v, place).sqrt())
     }
 
-    /// The unit direction in which the profile is run over.
+    /// The unit tangent of the curve, for growing v.
     fn way(&self, v: f64, place: &Place) -> DVec2 {
         let [from, to] = &self.span.ends;
         // At a node both derivatives vanish; beside it y is the root of the second one.

@@ -3,7 +3,8 @@
 //!
 //! ```text
 //!   plane  a z + b x = d        y² = g(v) = r(v)² − x(v)²,   x(v) = (d − a z(v)) / b
-//!   r(v), z(v): the profile     x: from the axis along the way in which the plane leans, y: across it
+//!   r(v), z(v): the profile     x: distance from the axis along n less its part along the axis,
+//!                               n the plane's normal; y: at right angles to that and to the axis
 //!   s = (z − a d) / b: along the plane, across y
 //! ```
 
@@ -43,7 +44,7 @@ pub(super) struct Section {
     d: f64,
 }
 
-/// What is known at a place of the profile.
+/// The section at a place of the profile: where it is in the plane, and y² with its derivatives by v.
 #[derive(Clone, Copy)]
 pub(super) struct Place {
     pub s: f64,
@@ -61,7 +62,7 @@ pub(super) struct Place {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct End {
     pub v: f64,
-    /// What y² is off there.
+    /// The residual: what y² is there, where it should be 0.
     pub residual: f64,
     pub kind: EndKind,
 }
@@ -95,7 +96,7 @@ impl Section {
         (self.b * self.d - self.a * s, self.a * self.d + self.b * s)
     }
 
-    /// What is known at a place; of a closed profile whole numbers mean nothing.
+    /// The section at a place; of a closed profile v and v + 1 are one place.
     pub fn place(&self, v: f64) -> Place {
         self.of_jet(&self.meridian.jet(if self.is_closed { v.rem_euclid(1.0) } else { v }))
     }

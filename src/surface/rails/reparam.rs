@@ -18,12 +18,12 @@ pub enum Reparam {
 /// A cubic rises all along a piece where its slopes at the ends are at most so many times the secant [Fritsch & Carlson 1980].
 const STEEPEST: f64 = 3.0;
 
-/// What a map runs over at an even rate.
-#[derive(Clone, Debug, Default)]
+/// Pieces of a map that have a constant slope.
+#[derive(Clone, Debug)]
 pub struct Even {
     /// One per piece.
     pub pieces: Vec<bool>,
-    /// Nodes at which the rate may jump between even pieces: corners.
+    /// Nodes at which the slope may jump between two such pieces: corners.
     pub jumps: Vec<usize>,
 }
 
@@ -51,8 +51,8 @@ impl Map {
         Self::even_over(x, y, how, &Even { pieces: even, jumps: Vec::new() }, periodic)
     }
 
-    /// The same at an even rate over some pieces: where lines are straight, what is blended between them is straight only if all of them are
-    /// run over evenly. A piece beside one leaves it at its rate, or at three times its own where that is less.
+    /// The same with a constant slope over some pieces: what is blended between straight lines is straight only if each has one. The piece
+    /// beside such a piece begins with its slope, or with three times its own secant where that is less.
     pub fn even_over(x: Vec<f64>, y: Vec<f64>, how: Reparam, even: &Even, periodic: bool) -> Self {
         let slope = if how == Reparam::Linear { Vec::new() } else { slopes(&x, &y, periodic) };
         // Nodes on a line up to rounding need no cubic: most maps are the identity.

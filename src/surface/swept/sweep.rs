@@ -181,7 +181,7 @@ fn missing(lines: &[(usize, Rail)], net: &SweepNet, last: usize) -> Vec<usize> {
     have.into_iter().filter(|k| !lines.iter().any(|l| l.0 == *k)).collect()
 }
 
-/// A line through the sections at one of their common breaks: a spline, in parts where the main guide has a corner or is straight; a
+/// A line through the sections at one of their common breaks: a spline, in parts where all guides have a corner or are straight; a
 /// pole where they all meet there.
 fn through((net, even): (&SweepNet, &Even), place: usize, nodes: &[f64], origin: Origin, tolerance: &Tolerance) -> Result<Rail> {
     let points: Vec<DVec3> = net.ribs.iter().map(|r| r.chain.point(r.breaks[place])).collect();
