@@ -1,6 +1,6 @@
 //! Checks finished faces against size, chord error and angle, and by which factor counts are too small in each direction.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use crate::base::digest::{StableHash, StableHasher};
 use crate::base::math::widest_angle;
@@ -199,7 +199,7 @@ fn sizes(finished: &Finished, mesh: &Mesh, near: f64, verdict: &mut Verdict) {
 /// Turns of the normal over each cell: between its corners, and between places inside where cells are large.
 fn turns(surface: &Surface, finished: &Finished, limits: &Limits, limit: f64, verdict: &mut Verdict) {
     let worst = match &finished.face_mesh.geometry.nodes {
-        FaceNodes::Grid(grid, _) => turns_of_grid(surface, grid),
+        FaceNodes::Grid(grid, frame) => turns_of_grid(surface, grid, frame.poles),
         nodes => [0.0, 0.0, turn_of_cells(surface, nodes)],
     };
     let most = worst.iter().fold(0.0_f64, |m, t| m.max(*t));
@@ -219,17 +219,28 @@ fn turns(surface: &Surface, finished: &Finished, limits: &Limits, limit: f64, ve
     }
 }
 
+/// How far from a pole its normals are looked at, as a share of the way to the next place.
+const BESIDE_POLE: f64 = 1.0 / 64.0;
+
 /// The largest turns over cells of a grid: along u, along v, and in all.
-fn turns_of_grid(surface: &Surface, grid: &Grid) -> [f64; 3] {
+fn turns_of_grid(surface: &Surface, grid: &Grid, poles: [bool; 4]) -> [f64; 3] {
     let (nu, nv) = grid.size();
     let parts = |n: usize| SETTINGS.min_samples.div_ceil(n).min(SETTINGS.max_cell_samples);
     let (ku, kv) = (parts(nu), parts(nv));
     let lean = |last: bool| if last { OneSided::Before } else { OneSided::After };
+    // The tip of a cone has as many normals as directions: each line to it has its own, just before it.
+    let share = |k: usize, parts: usize, [first, last]: [bool; 2]| match k {
+        0 if first => BESIDE_POLE / parts as f64,
+        k if last && k == parts => 1.0 - BESIDE_POLE / parts as f64,
+        k => k as f64 / parts as f64,
+    };
     let line = |j: usize, y: usize| -> Vec<DVec3> {
+        let y_share = share(y, kv, [poles[0] && j == 0, poles[2] && j + 1 == nv]);
         (0..=nu * ku)
             .map(|n| {
                 let i = (n / ku).min(nu - 1);
-                let (u, v) = inside(grid, (i, j), ((n - i * ku) as f64 / ku as f64, y as f64 / kv as f64));
+                let x_share = share(n - i * ku, ku, [poles[3] && i == 0, poles[1] && i + 1 == nu]);
+                let (u, v) = inside(grid, (i, j), (x_share, y_share));
                 surface.normal_one_sided(u, v, (lean(n == nu * ku), lean(j + 1 == nv && y == kv)))
             })
             .collect()
@@ -260,15 +271,18 @@ fn inside(grid: &Grid, (i, j): (usize, usize), (x, y): (f64, f64)) -> (f64, f64)
 /// The largest turn over the cells of a lattice, of blocks or of a free face.
 fn turn_of_cells(surface: &Surface, nodes: &FaceNodes) -> f64 {
     let uv = nodes.listed_uv();
-    let normals: Vec<DVec3> = uv.iter().map(|(u, v)| surface.normal(*u, *v)).collect();
     let few = uv.len() < SETTINGS.min_samples * SETTINGS.min_samples;
     let mut worst = 0.0_f64;
     nodes.each_listed_cell(|corners| {
-        let mut own: Vec<DVec3> = corners.iter().map(|c| normals[*c]).collect();
+        let places: Vec<DVec2> = corners.iter().map(|c| uv[*c].into()).collect();
+        let middle = places.iter().sum::<DVec2>() / places.len() as f64;
+        // Seen from inside the cell: along a crease there are two normals.
+        let normal = |at: DVec2| surface.normal_on_crease(at, middle).unwrap_or_else(|| surface.normal(at.x, at.y));
+        let mut own: Vec<DVec3> = places.iter().copied().map(normal).collect();
         if few {
             // The middles of sides and diagonals.
-            for (k, a) in corners.iter().enumerate() {
-                own.extend(corners[k + 1..].iter().map(|b| surface.normal(0.5 * (uv[*a].0 + uv[*b].0), 0.5 * (uv[*a].1 + uv[*b].1))));
+            for (k, a) in places.iter().enumerate() {
+                own.extend(places[k + 1..].iter().map(|b| normal(a.midpoint(*b))));
             }
         }
         worst = worst.max(widest_angle(&own));

@@ -272,8 +272,12 @@ fn turn_ratio(chart: &Chart, xy: [DVec2; 3], places: [DVec2; 3], limits: &Limits
     limits.angle.map_or(0.0, |limit| {
         let tangents = |at: DVec2| chart.tangents(at.into());
         let columns = from_pole(&tangents, places);
-        let normals =
-            [0, 1, 2].map(|k| poles::normal(chart.surface(), &tangents, columns[k]).unwrap_or_else(|| chart.spot(xy[k]).normal()));
+        let middle = (places[0] + places[1] + places[2]) / 3.0;
+        let normal = |k: usize| {
+            let of_pole = || poles::normal(chart.surface(), &tangents, columns[k]);
+            chart.surface().normal_on_crease(places[k], middle).or_else(of_pole).unwrap_or_else(|| chart.spot(xy[k]).normal())
+        };
+        let normals = [0, 1, 2].map(normal);
         let turn = |i: usize, j: usize| angle_between(normals[i], normals[j]);
         turn(0, 1).max(turn(1, 2)).max(turn(2, 0)) / limit
     })

@@ -1,8 +1,8 @@
 //! Normals of surfaces, at poles too.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
-use crate::base::tolerance::{POLE_STEP, Tolerance};
+use crate::base::tolerance::{EPSILON, POLE_STEP, Tolerance};
 use crate::surface::core::surface::Surface;
 use crate::surface::data::jet::unit_normal;
 use crate::surface::data::kind::Domain;
@@ -13,6 +13,24 @@ impl Surface {
     /// Unit normal `du × dv`; at a pole the limit; zero only where the surface is singular.
     pub fn normal(&self, u: f64, v: f64) -> DVec3 {
         self.normal_one_sided(u, v, (OneSided::After, OneSided::After))
+    }
+
+    /// The normal at a place on a crease or seam, on the side of it where another place is; none elsewhere, nor at a pole. Where the
+    /// surface closes places go on beyond 0…1.
+    pub fn normal_on_crease(&self, at: DVec2, towards: DVec2) -> Option<DVec3> {
+        let (kinks, closed) = (self.kinks(), self.closed());
+        let sided = |x: f64, towards: f64, kinks: &[f64], closed: bool| {
+            let side = if towards < x { OneSided::Before } else { OneSided::After };
+            let x = if closed { x - x.floor() } else { x };
+            // Both ends of what closes are one line.
+            if closed && x.min(1.0 - x) <= EPSILON {
+                return (if side == OneSided::Before { 1.0 } else { 0.0 }, side, true);
+            }
+            kinks.iter().find(|k| (x - **k).abs() <= EPSILON).map_or((x, side, false), |k| (*k, side, true))
+        };
+        let (u, u_side, on_u) = sided(at.x, towards.x, kinks.0, closed.0);
+        let (v, v_side, on_v) = sided(at.y, towards.y, kinks.1, closed.1);
+        if on_u || on_v { unit_normal(&self.jet_one_sided(u, v, (u_side, v_side))) } else { None }
     }
 
     /// Unit normal of the smooth piece on the given side, see [`Surface::jet_one_sided`].
