@@ -38,7 +38,15 @@ impl Model {
             stops.windows(2).map(|w| Trace::new(surface, line.at(w[0]), line.at(w[1])).length()).sum::<f64>()
         };
         let whole = length(1.0);
+        let closed = if matches!(line, IsoLine::U(_)) { surface.closed().1 } else { surface.closed().0 };
         let between = |low: f64, high: f64| {
+            // Where a surface closes, places go on beyond 0…1.
+            let turns = if closed { (0.5 * (low + high)).floor() } else { 0.0 };
+            let (low, high) = (low - turns, high - turns);
+            if closed && high - low < 1.0 && (low < 0.0 || high > 1.0) {
+                let share = |t: f64| length(t - t.floor()) / whole;
+                return chain.slice(share(low), share(high), tolerance);
+            }
             let (low, high) = (if low <= 0.0 { 0.0 } else { length(low) / whole }, if high >= 1.0 { 1.0 } else { length(high) / whole });
             if low == 0.0 && high == 1.0 { Ok(chain.clone()) } else { chain.slice(low, high, tolerance) }
         };

@@ -207,6 +207,32 @@ check area(part["sail_2"]) == area(model.sail) within 0.0001%
     assert!(!run.status.success() && said.contains("igs holds curves, surfaces, shells and points, not meshes"), "{said}");
 }
 
+/// A face that crosses the seam of its torus, read and written again: the border that is cut there stays the part that it is.
+#[test]
+fn borders_over_a_seam_come_back_as_they_were() {
+    let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("iges-over-a-seam");
+    std::fs::create_dir_all(&folder).unwrap();
+    let made = r#"
+units mm
+let at = (6.7139 + 2.4301 * cos(3.8232deg), 0, 2.4301 * sin(3.8232deg))
+surface strip = revolve(arc(center: (6.7139, 0, 0), start: at, angle: -7.5819deg, normal: (0, -1, 0)), angle: 30.3978deg)
+surface rounded = revolve(polyline([(1, 0, 0.5), (2.6, 0, -2.1), (2.2, 0, -2.8)], round: 0.16), angle: 73deg)
+"#;
+    let run = |name: &str, script: &str| {
+        std::fs::write(folder.join(name), script).unwrap();
+        let run = std::process::Command::new(env!("CARGO_BIN_EXE_loft")).args(["run", name]).current_dir(&folder).output().unwrap();
+        assert!(run.status.success(), "{name}: {}{}", String::from_utf8_lossy(&run.stdout), String::from_utf8_lossy(&run.stderr));
+    };
+    for which in ["strip", "rounded"] {
+        run("model.loft", &format!("{made}export {which} to \"first.igs\"\n"));
+        run("again.loft", "units mm\nimport \"first.igs\" as part\nexport part to \"second.igs\"\n");
+        let compared = format!(
+            "units mm\nuse \"model.loft\" as model\nimport \"second.igs\" as part\ncheck area(part) == area(model.{which}) within 1e-6\n"
+        );
+        run("compared.loft", &compared);
+    }
+}
+
 /// Faces of other programs, written and read again: the same areas, and (u, v) that agree with the curves in space.
 #[test]
 fn trimmed_surfaces_come_back_with_their_borders() {
