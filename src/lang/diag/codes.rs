@@ -150,6 +150,7 @@ codes! {
     now "E643", "guide-order-differs", "guides meet sections in different orders";
     now "W644", "section-scaled", "a section was scaled to its guides";
     now "W645", "station-ripples", "a station of a sweep bends to and fro";
+    now "W646", "law-missed", "a sweep is off its law between stations";
     now "W651", "grid-uneven", "the points of a grid are unevenly spaced";
     now "E652", "pole-tangent-parallel", "tangents at a pole are parallel";
     now "E653", "corner-tangent-parallel", "tangents at a corner are parallel";

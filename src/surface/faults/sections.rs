@@ -161,6 +161,6 @@ fn inflections_of(n: usize) -> String {
 }
 
 /// A factor with three digits that count.
-fn few(x: f64) -> String {
+pub(super) fn few(x: f64) -> String {
     real(format!("{x:.2e}").parse().unwrap_or(x))
 }

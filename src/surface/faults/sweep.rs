@@ -5,6 +5,7 @@ use glam::DVec3;
 use crate::base::fault::{Describe, Report, Say, codes};
 use crate::base::origin::Origin;
 use crate::base::text::decimals;
+use crate::surface::faults::sections::few;
 
 /// What can go wrong with a guide or path, or deserves a word. Lengths are model units.
 #[derive(Clone, Debug, PartialEq)]
@@ -86,12 +87,25 @@ pub enum SweepFault {
         /// Radius of the path's bend there; none on a straight run between corners.
         radius: Option<f64>,
     },
+    /// W646: between its stations a sweep is off its law.
+    LawMissed {
+        /// The surface.
+        surface: Origin,
+        /// Name of the law.
+        law: &'static str,
+        /// By how much, model units.
+        off: f64,
+        /// The same as a share of the section's length.
+        share: f64,
+        /// A point of the section that the law asks for.
+        at: DVec3,
+    },
 }
 
 impl Describe for SweepFault {
     codes! {
         GuideMissesStation "E634", GuideDoublesBack "E635", MainGuideOnAxis "E637", GuideExtended "N638", GuideCusp "E636",
-        BentRun "E306", SelfIntersects "W639"
+        BentRun "E306", SelfIntersects "W639", LawMissed "W646"
     }
 
     fn describe(&self, say: &dyn Say) -> Report {
@@ -166,6 +180,19 @@ impl Describe for SweepFault {
                     .at(*path, "bends too sharply for this section")
                     .help("draw the path with wider bends, or a smaller section")
             }
+            Self::LawMissed { surface, law, off, share, at } => law_missed(say, *surface, law, (*off, *share), *at),
         }
     }
+}
+
+fn law_missed(say: &dyn Say, surface: Origin, law: &str, (off, share): (f64, f64), at: DVec3) -> Report {
+    Report::new(format!(
+        "{} is {} off the section that the {law} law asks for at {}: {}% of that section's length",
+        say.quoted(surface, "this sweep"),
+        say.length(off),
+        say.point(at),
+        few(100.0 * share)
+    ))
+    .at(surface, "made here")
+    .help("write the guide first that bends most there: stations are as close as it needs; or give a section there")
 }

@@ -7,6 +7,7 @@ pub mod deform;
 mod displacement;
 pub mod extrude;
 pub mod frame;
+mod law_met;
 pub mod laws;
 pub mod legs;
 pub mod marks;

@@ -17,7 +17,7 @@ use crate::surface::swept::displacement::Displacement;
 use crate::surface::swept::laws::{Law, Main, samples};
 use crate::surface::swept::marks::Marks;
 use crate::surface::swept::sections::Section;
-use crate::surface::swept::sweep_net::{Rib, SweepNet};
+use crate::surface::swept::sweep_net::{Place, Rib, SweepNet};
 use crate::surface::swept::synchronized::Divided;
 
 /// What the sections at all stations are made from.
@@ -42,18 +42,31 @@ struct Cut {
 }
 
 impl Given<'_> {
-    /// Adds the sections at the stations `ws` of the main guide, whose fractions of all guides are `fractions`, and their warnings.
-    pub(super) fn ribs(&self, made: &mut SweepNet, ws: &[f64], fractions: Vec<Vec<f64>>, main: &mut Main) -> Result<()> {
-        let cut = self.cut(made, ws)?;
-        for (place, (&w, on_guides)) in ws.iter().zip(fractions).enumerate() {
+    /// Adds the sections at places along the main guide, and their warnings.
+    pub(super) fn ribs(&self, made: &mut SweepNet, places: Vec<Place>, main: &mut Main) -> Result<()> {
+        let ws: Vec<f64> = places.iter().map(|place| place.w).collect();
+        let given = |w: f64| self.sections.iter().any(|s| s.on_guides[0] == w);
+        let cut = match self.cut(made, &ws) {
+            // Where only sections to look at are made from others, they decide nothing.
+            Err(_) if places.iter().all(|place| place.halfway || given(place.w)) => None,
+            found => Some(found?),
+        };
+        for (number, Place { w, on_guides, halfway }) in places.into_iter().enumerate() {
             job::poll();
             if let Some(k) = self.sections.iter().position(|s| s.on_guides[0] == w) {
                 made.ribs.push(Rib { w, on_guides, chain: self.sections[k].chain.clone(), breaks: self.marks.rows[k].clone() });
                 continue;
             }
-            let found = self.between(made, &cut, place, w, &on_guides, main);
+            let Some(cut) = &cut else { continue };
+            let (found, scaled) = self.between(made, cut, number, w, &on_guides, main);
             let (chain, breaks) = deform::curve(&found, self.origin);
-            made.ribs.push(Rib { w, on_guides, chain, breaks });
+            let rib = Rib { w, on_guides, chain, breaks };
+            if halfway {
+                made.halfway.push(rib);
+            } else {
+                made.notes.extend(scaled);
+                made.ribs.push(rib);
+            }
         }
         made.notes.extend(ripples(&made.ribs, self.sections, self.origin, self.tolerance));
         if self.law == Law::Normal {
@@ -120,8 +133,9 @@ impl Given<'_> {
         }
     }
 
-    /// The section at a station, number `place` at the fraction `w`, from its neighbours.
-    fn between(&self, made: &mut SweepNet, cut: &Cut, place: usize, w: f64, on_guides: &[f64], main: &mut Main) -> Pieces {
+    /// The section at a station, number `place` at the fraction `w`, from its neighbours, with warnings of those that are scaled much.
+    fn between(&self, made: &SweepNet, cut: &Cut, place: usize, w: f64, on_guides: &[f64], main: &mut Main) -> (Pieces, Vec<Fault>) {
+        let mut scaled = Vec::new();
         let station = main.station(w);
         let targets: Vec<DVec3> = made.order.iter().map(|&j| made.guides[j].chain.point(on_guides[j])).collect();
         let (neighbours, before) = self.neighbours(w, made.closed.0);
@@ -139,14 +153,15 @@ impl Given<'_> {
             let nearest = before.is_none_or(|before| nth == before || nth == before + 1);
             if nearest && !(LEAST_SCALE..=1.0 / LEAST_SCALE).contains(&scale) {
                 let fault = SectionFault::Scaled { section: section.chain.origin(), scale, at: station.at };
-                made.notes.push(fault.into());
+                scaled.push(fault.into());
             }
             copies.push(Copy { w: given, pieces: deformation.pieces(&cut.pieces[k], cut.along[k].as_ref()), course: &cut.courses[k] });
         }
-        match before {
+        let pieces = match before {
             Some(before) => blend::blended(&copies, before, w, made.closed.1, self.tolerance),
             None => copies.swap_remove(0).pieces,
-        }
+        };
+        (pieces, scaled)
     }
 }
 

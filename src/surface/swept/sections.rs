@@ -1,7 +1,7 @@
 //! Sections and guides put in order: where they touch, which way they run, where a closed one starts.
 
 use crate::network::fault::GridFault;
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use crate::base::fault::{Fault, Result, ValueFault};
 use crate::base::tolerance::{NUDGE, Tolerance};
@@ -154,11 +154,11 @@ impl Section {
         Ok(Self { chain, anchors, on_guides: self.on_guides.clone() })
     }
 
-    /// How unlike it lies to another section, each about its first anchor.
-    pub fn unlike(&self, other: &Self) -> f64 {
+    /// How unlike it lies to another section that the law has turned up to it, each about its first anchor.
+    fn unlike(&self, other: &Self, turn: DMat3) -> f64 {
         const PLACES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
         let arm = |s: &Self, f: f64| s.chain.point(f) - s.anchor(0);
-        PLACES.iter().map(|&f| arm(self, f).distance_squared(arm(other, f))).sum()
+        PLACES.iter().map(|&f| arm(self, f).distance_squared(turn * arm(other, f))).sum()
     }
 }
 
@@ -212,8 +212,15 @@ pub fn apart(section: &Chain, guide: &Guide) -> Fault {
 
 /// Turns sections so that all meet the guides in one order, and puts the guides in that order.
 ///
+/// `turn` says how the law turns a section up to the one at a place, from the one before it.
+///
 /// Returns that order: places of the guides along the sections. E604 where a section has another.
-pub fn aligned(sections: &mut [Section], guides: &[Guide], tolerance: &Tolerance) -> Result<Vec<usize>> {
+pub fn aligned(
+    sections: &mut [Section],
+    guides: &[Guide],
+    mut turn: impl FnMut(&[Section], usize) -> DMat3,
+    tolerance: &Tolerance,
+) -> Result<Vec<usize>> {
     let closed = sections[0].chain.is_closed(tolerance);
     if let Some(other) = sections.iter().find(|s| s.chain.is_closed(tolerance) != closed) {
         let found = format!("closed and open curves, {:.0}% along the first guide one of the other kind", 100.0 * other.on_guides[0]);
@@ -229,13 +236,16 @@ pub fn aligned(sections: &mut [Section], guides: &[Guide], tolerance: &Tolerance
         order.sort_by(|&a, &b| s.anchors[a].total_cmp(&s.anchors[b]));
         order
     };
-    let back = |s: &Section| if closed { s.reversed().begun(tolerance) } else { Ok(s.reversed()) };
+    let reversed = |s: &Section| if closed { s.reversed().begun(tolerance) } else { Ok(s.reversed()) };
     let wanted = order(&sections[0]);
     for k in 1..sections.len() {
-        let other = back(&sections[k])?;
+        let other = reversed(&sections[k])?;
         let (as_is, turned) = (order(&sections[k]) == wanted, order(&other) == wanted);
-        let turn = match (as_is, turned) {
-            (true, true) => other.unlike(&sections[k - 1]) < sections[k].unlike(&sections[k - 1]),
+        let back = match (as_is, turned) {
+            (true, true) => {
+                let (before, turn) = (&sections[k - 1], turn(sections, k));
+                other.unlike(before, turn) < sections[k].unlike(before, turn)
+            }
             (false, true) => true,
             (true, false) => false,
             (false, false) => {
@@ -248,7 +258,7 @@ pub fn aligned(sections: &mut [Section], guides: &[Guide], tolerance: &Tolerance
                 return Err(GridFault::GridNotMonotone { curve, a: origin(a), b: origin(b), first, second }.into());
             }
         };
-        if turn {
+        if back {
             sections[k] = other;
         }
     }

@@ -1,13 +1,17 @@
 //! `sweep`: sections swept along guides by a law.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use crate::base::fault::{Fault, Result};
 use crate::base::origin::Origin;
 use crate::base::tolerance::{NEAREST, NUDGE, Tolerance};
-use crate::geometry::construct::build::line;
-use crate::geometry::construct::spline::{Ends, Spline, spline};
+use crate::geometry::construct::build::{all_different, line};
+use crate::geometry::construct::spline::{self, Ends, Spacing, Spline};
+use crate::geometry::curves::curve::Shape as CurveShape;
 use crate::geometry::data::fault::CurveFault;
+use crate::geometry::{Curve, Kind};
 use crate::network::Chain;
 use crate::surface::blended::coons::{Made, finish};
 use crate::surface::blended::gordon::{CurveNet, Named, gordon};
@@ -19,8 +23,10 @@ use crate::surface::faults::{BorderFault, SweepFault};
 use crate::surface::rails::rail::Rail;
 use crate::surface::rails::reparam::{Even, Map, Reparam};
 use crate::surface::shapes::blend::Blend;
+use crate::surface::shapes::cardinal::{End, ended, slopes};
 use crate::surface::shapes::rule::Rule;
 use crate::surface::shapes::weights::BlendAxis;
+use crate::surface::swept::law_met::{Missed, Place, missed};
 use crate::surface::swept::laws::Law;
 use crate::surface::swept::sections::Guide;
 use crate::surface::swept::single::single;
@@ -41,9 +47,47 @@ pub fn sweep(input: &Input, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault
         return Ok(done);
     }
     let mut guides: Vec<Guide> = input.guides.iter().map(Guide::new).collect();
+    let (mut more, mut best): (Vec<f64>, Option<Swept>) = (Vec::new(), None);
+    for _ in 0..ROUNDS {
+        match denser(input, &mut guides, &more, tolerance) {
+            Ok(swept) if swept.missed.fractions.is_empty() => return Ok((swept.surface, swept.notes)),
+            Ok(swept) => {
+                more.extend(&swept.missed.fractions);
+                best = Some(swept);
+            }
+            // What more stations lose is no reason to refuse those that there are.
+            Err(fault) if fault.of::<CurveFault>().is_some() && best.is_some() => break,
+            Err(fault) => return Err(fault),
+        }
+    }
+    let Some(Swept { surface, mut notes, missed: Missed { worst: Place { at, off, share }, .. } }) = best else {
+        return Err(CurveFault::NotConverged { of: input.origin, what: "a sweep".to_owned(), at: input.guides[0].start() }.into());
+    };
+    notes.push(SweepFault::LawMissed { surface: input.origin, law: input.law.name(), off, share, at }.into());
+    Ok((surface, notes))
+}
+
+/// A surface is made so many times at most, each time with more stations where it is off its law: it comes nearer by a factor of 16 where guides and
+/// sections change smoothly.
+const ROUNDS: usize = 9;
+
+/// A surface with its notes, and where it is off its law.
+struct Swept {
+    surface: Surface,
+    notes: Vec<Fault>,
+    missed: Missed,
+}
+
+/// The surface with stations at the fractions `more` of the main guide too; guides that are too short are extended.
+fn denser(input: &Input, guides: &mut [Guide], more: &[f64], tolerance: &Tolerance) -> Result<Swept> {
     loop {
-        match net(input.sections, &guides, input.law, input.origin, tolerance)? {
-            Ok(net) => return surface(net, input, tolerance),
+        match net(input, guides, more, tolerance)? {
+            Ok(net) => {
+                let (surface, notes) = surface(&net, input, tolerance)?;
+                let rounded = net.rounds_corners(tolerance) || input.method == NetMethod::Local;
+                let missed = if rounded { Missed::default() } else { missed(&surface, &net, tolerance) };
+                return Ok(Swept { surface, notes, missed });
+            }
             Err(short) => {
                 let guide = &guides[short.guide];
                 let fixed = short.guide == 0 || guide.own != (0.0, 1.0) || input.law == Law::Synchronized;
@@ -54,7 +98,7 @@ pub fn sweep(input: &Input, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault
     }
 }
 
-pub(crate) fn surface(net: SweepNet, input: &Input, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
+fn surface(net: &SweepNet, input: &Input, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
     let mut notes = net.notes.clone();
     let mut nodes_u: Vec<f64> = net.ribs.iter().map(|r| r.w).collect();
     if net.closed.0 {
@@ -69,11 +113,11 @@ pub(crate) fn surface(net: SweepNet, input: &Input, tolerance: &Tolerance) -> Re
     let even = net.even(tolerance);
     let mut lines: Vec<(usize, Rail)> = Vec::new();
     for (&j, &place) in net.order.iter().zip(&net.places) {
-        lines.push((place, guide_rail((&net, &even), j, &nodes_u, &mut notes, tolerance)?));
+        lines.push((place, guide_rail((net, &even), j, &nodes_u, &mut notes, tolerance)?));
     }
     let last = net.breaks.len() - 1;
-    for place in missing(&lines, &net, last) {
-        lines.push((place, through((&net, &even), place, &nodes_u, input.origin, tolerance)?));
+    for place in missing(&lines, net, last) {
+        lines.push((place, through((net, &even), place, &nodes_u, input.origin, tolerance)?));
     }
     lines.sort_by_key(|l| l.0);
     let mut nodes_v: Vec<f64> = lines.iter().map(|l| net.breaks[l.0]).collect();
@@ -98,7 +142,7 @@ pub(crate) fn surface(net: SweepNet, input: &Input, tolerance: &Tolerance) -> Re
         ),
     };
     notes.extend(more);
-    contains(&made, &net, tolerance)?;
+    contains(&made, net, tolerance)?;
     Ok((made, notes))
 }
 
@@ -189,7 +233,7 @@ fn through((net, even): (&SweepNet, &Even), place: usize, nodes: &[f64], origin:
         return Ok(Rail::Point(points[0]));
     }
     if net.closed.0 {
-        let curve = spline(&points, &Spline { start: Ends::Natural, end: Ends::Natural, closed: true }, origin)?;
+        let curve = spline::spline(&points, &Spline { start: Ends::Natural, end: Ends::Natural, closed: true }, origin)?;
         let mut fractions: Vec<f64> = curve.knots().iter().map(|t| curve.length_at(*t) / curve.length()).collect();
         let n = fractions.len() - 1;
         (fractions[0], fractions[n]) = (0.0, 1.0);
@@ -201,7 +245,7 @@ fn through((net, even): (&SweepNet, &Even), place: usize, nodes: &[f64], origin:
         let run = &points[part.from..=part.to];
         let curve = match run {
             [a, .., b] if part.straight || run.len() == 2 => line(*a, *b, origin)?,
-            _ => spline(run, &Spline { start: part.ends.0, end: part.ends.1, closed: false }, origin)?,
+            _ => spline_part(run, part.ends, origin)?,
         };
         let before = lengths[lengths.len() - 1];
         let knots: Vec<f64> = match part.straight || run.len() == 2 {
@@ -221,6 +265,23 @@ fn through((net, even): (&SweepNet, &Even), place: usize, nodes: &[f64], origin:
     Ok(Rail::new(chain, Map::even_over(nodes.to_vec(), fractions, Reparam::Smooth, even, false)))
 }
 
+/// The spline through the points of a part; where it has no given direction its end is "not a knot", as the blend's is.
+fn spline_part(points: &[DVec3], ends: (Option<DVec3>, Option<DVec3>), origin: Origin) -> Result<Curve> {
+    all_different(points, false, origin)?;
+    let spans = Spacing::Chord.spans(points);
+    let mut knots = vec![0.0];
+    spans.iter().for_each(|span| knots.push(knots[knots.len() - 1] + span));
+    let [first, last] = [ends.0, ends.1].map(|way| way.map(DVec3::normalize_or_zero));
+    let end = |way: Option<DVec3>| if way.is_some() { End::Slope } else { End::Plain };
+    let rows = match (first, last) {
+        (None, None) => slopes(&knots, false),
+        _ => ended(&knots, (end(first), end(last))),
+    };
+    let values = || points.iter().copied().chain([first.unwrap_or_default(), last.unwrap_or_default()]);
+    let slopes: Vec<DVec3> = rows.iter().map(|row| row.iter().zip(values()).map(|(by, value)| value * *by).sum()).collect();
+    Ok(Curve::new(CurveShape::Nurbs(Arc::new(spline::through(points, &spans, &slopes))), Kind::Spline, origin))
+}
+
 /// A part of a line through sections.
 struct Part {
     /// Places of its first and last station.
@@ -228,7 +289,8 @@ struct Part {
     to: usize,
     /// Whether it is a straight line, as the main guide is there.
     straight: bool,
-    ends: (Ends, Ends),
+    /// Directions at its ends, where the parts beside it give them.
+    ends: (Option<DVec3>, Option<DVec3>),
 }
 
 /// The parts of a line through points at the stations: they end at corners of all guides, and where these cease to be straight and the
@@ -250,7 +312,7 @@ fn parts_of(even: &Even, points: &[DVec3], tolerance: &Tolerance) -> Vec<Part> {
         let straight = straight[w[0]] && on_line(w[0], w[1]);
         match parts.last_mut() {
             Some(before) if !(before.straight || straight || corner(w[0])) => before.to = w[1],
-            _ => parts.push(Part { from: w[0], to: w[1], straight, ends: (Ends::Natural, Ends::Natural) }),
+            _ => parts.push(Part { from: w[0], to: w[1], straight, ends: (None, None) }),
         }
     }
     for k in 1..parts.len() {
@@ -258,7 +320,7 @@ fn parts_of(even: &Even, points: &[DVec3], tolerance: &Tolerance) -> Vec<Part> {
         if corner(at) {
             continue;
         }
-        let way = |part: &Part| Ends::Clamped(points[part.to] - points[part.from]);
+        let way = |part: &Part| Some(points[part.to] - points[part.from]);
         if parts[k - 1].straight {
             parts[k].ends.0 = way(&parts[k - 1]);
         } else if parts[k].straight {

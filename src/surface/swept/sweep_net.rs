@@ -4,7 +4,6 @@ use glam::DVec3;
 
 use crate::base::fault::{Fault, Result, ValueFault};
 use crate::base::math;
-use crate::base::origin::Origin;
 use crate::base::tolerance::{NUDGE, Tolerance};
 use crate::network::Chain;
 use crate::surface::faults::SweepFault;
@@ -14,6 +13,7 @@ use crate::surface::swept::laws::{Law, Main, Station, check_section, plane_norma
 use crate::surface::swept::marks::Marks;
 use crate::surface::swept::ribs::Given;
 use crate::surface::swept::sections::{Guide, Section, against, aligned, apart};
+use crate::surface::swept::sweep_input::Input;
 use crate::surface::swept::synchronized::{self, Divided};
 
 /// Sections and the main guide's direction turn by at most this between two stations, radians.
@@ -40,6 +40,16 @@ pub struct Rib {
     pub breaks: Vec<f64>,
 }
 
+/// A place along the main guide at which a section is made.
+pub(super) struct Place {
+    /// Fraction of the main guide.
+    pub w: f64,
+    /// Fractions of the guides, in their given order.
+    pub on_guides: Vec<f64>,
+    /// Whether it lies half way between two stations.
+    pub halfway: bool,
+}
+
 /// All that the surface is made of.
 pub struct SweepNet {
     /// Guides, in the main guide's direction.
@@ -48,6 +58,8 @@ pub struct SweepNet {
     pub order: Vec<usize>,
     /// Sections at all stations, by ascending w.
     pub ribs: Vec<Rib>,
+    /// Sections half way between two stations, by ascending w: the surface is compared with them, it is not made of them.
+    pub halfway: Vec<Rib>,
     /// v of the common breaks.
     pub breaks: Vec<f64>,
     /// Which break each guide runs through, in the order of `order`.
@@ -65,6 +77,16 @@ impl SweepNet {
         own.chain(self.closed.0.then_some(1.0)).collect()
     }
 
+    /// Whether some guide has a corner at a station where others have none: the surface goes on smoothly there beside that guide.
+    pub fn rounds_corners(&self, tolerance: &Tolerance) -> bool {
+        let at_corner = |j: usize| -> Vec<usize> {
+            let (places, kinks) = (self.on_guide(j), self.guides[j].chain.kinks(tolerance));
+            (0..places.len()).filter(|k| kinks.iter().any(|f| (f - places[*k]).abs() <= NUDGE)).collect()
+        };
+        let first = at_corner(0);
+        (1..self.guides.len()).any(|j| at_corner(j) != first)
+    }
+
     /// Spans between stations over which all guides are straight, and stations at which all of them have a corner.
     pub fn even(&self, tolerance: &Tolerance) -> Even {
         let rails: Vec<Rail> = self.guides.iter().map(|guide| Rail::new(guide.chain.clone(), Map::identity())).collect();
@@ -77,14 +99,9 @@ impl SweepNet {
     }
 }
 
-/// Makes the net, or says which guide is too short for it.
-pub fn net(
-    sections: &[Chain],
-    guides: &[Guide],
-    law: Law,
-    origin: Origin,
-    tolerance: &Tolerance,
-) -> Result<std::result::Result<SweepNet, TooShort>> {
+/// Makes the net, with stations at the fractions `more` of the main guide too, or says which guide is too short for it.
+pub fn net(input: &Input, guides: &[Guide], more: &[f64], tolerance: &Tolerance) -> Result<std::result::Result<SweepNet, TooShort>> {
+    let (sections, law, origin) = (input.sections, input.law, input.origin);
     let mut found = Vec::with_capacity(sections.len());
     for chain in sections {
         match Section::meeting(chain, guides, tolerance)? {
@@ -95,11 +112,18 @@ pub fn net(
     found.sort_by(|a, b| a.on_guides[0].total_cmp(&b.on_guides[0]));
     let (mut guides, mut sections) = (guides.to_vec(), found);
     let closed_u = seams(&mut guides, &mut sections, tolerance)?;
-    let order = aligned(&mut sections, &guides, tolerance)?;
-    let closed = (closed_u, sections[0].chain.is_closed(tolerance));
     let main_chain = guides[0].chain.clone();
     let normal = common_normal(&sections, &main_chain);
     let mut main = Main::new(&main_chain, law, normal, tolerance)?;
+    let turn = |sections: &[Section], k: usize| {
+        let (from, to) = (sections[k - 1].on_guides[0], sections[k].on_guides[0]);
+        match law {
+            Law::Synchronized => Divided { guides: &guides, sections }.turn((from, to)),
+            _ => main.station(to).turn * main.station(from).turn.transpose(),
+        }
+    };
+    let order = aligned(&mut sections, &guides, turn, tolerance)?;
+    let closed = (closed_u, sections[0].chain.is_closed(tolerance));
     for section in &sections {
         let station = main.station(section.on_guides[0]);
         if law != Law::Synchronized {
@@ -107,21 +131,37 @@ pub fn net(
         }
     }
     directions(&mut guides, &mut sections, law, closed_u, &mut main)?;
-    let ws = stations(&mut main, &guides, &sections, law, closed_u, tolerance);
-    let mut fractions: Vec<Vec<f64>> = Vec::with_capacity(ws.len());
-    for &w in &ws {
+    let mut ws = stations(&mut main, &guides, &sections, law, closed_u, tolerance);
+    ws.extend(more);
+    let ws = graded(ws, closed_u);
+    let mut places: Vec<Place> = Vec::with_capacity(2 * ws.len());
+    for (w, halfway) in with_middles(&ws, closed_u) {
         let station = main.station(w);
-        match on_guides(&guides, &sections, &station, law, fractions.last(), tolerance)? {
-            Ok(row) => fractions.push(row),
-            Err(short) => return Ok(Err(short)),
+        match on_guides(&guides, &sections, &station, law, places.last().map(|place| &place.on_guides), tolerance) {
+            Ok(Ok(on_guides)) => places.push(Place { w, on_guides, halfway }),
+            // What is only looked at decides nothing.
+            _ if halfway => {}
+            Ok(Err(short)) => return Ok(Err(short)),
+            Err(fault) => return Err(fault),
         }
     }
     let marks = Marks::new(&sections, &order, closed.1, tolerance)?;
-    let mut made =
-        SweepNet { guides, order, ribs: Vec::new(), breaks: marks.mean(), places: marks.places.clone(), closed, notes: Vec::new() };
+    let (breaks, through) = (marks.mean(), marks.places.clone());
+    let mut made = SweepNet { guides, order, ribs: Vec::new(), halfway: Vec::new(), breaks, places: through, closed, notes: Vec::new() };
     let given = Given { sections: &sections, marks: &marks, law, origin, tolerance };
-    given.ribs(&mut made, &ws, fractions, &mut main)?;
+    given.ribs(&mut made, places, &mut main)?;
     Ok(Ok(made))
+}
+
+/// Stations and the middles between them, in order, and which of them are middles.
+fn with_middles(ws: &[f64], closed: bool) -> Vec<(f64, bool)> {
+    let ends = ws[1..].iter().copied().chain(closed.then_some(1.0));
+    let spans: Vec<(f64, f64)> = ws.iter().copied().zip(ends).collect();
+    let mut all: Vec<(f64, bool)> = spans.into_iter().flat_map(|(from, to)| [(from, false), (0.5 * (from + to), true)]).collect();
+    if !closed {
+        all.push((ws[ws.len() - 1], false));
+    }
+    all
 }
 
 /// Begins closed guides at the first section; whether they are closed.
@@ -226,7 +266,7 @@ fn stations(main: &mut Main, guides: &[Guide], sections: &[Section], law: Law, c
             all.extend((1..parts).map(|n| ws[k] + (next - ws[k]) * n as f64 / parts as f64));
         }
     }
-    graded(all, closed)
+    all
 }
 
 /// A span between stations is at most so many times as long as the ones beside it: splines through uneven stations swing in long spans.
@@ -234,6 +274,7 @@ const UNEVEN: f64 = 3.0;
 
 /// Stations with more of them in the middle of every span that is much longer than one beside it.
 fn graded(mut ws: Vec<f64>, closed: bool) -> Vec<f64> {
+    ws.sort_by(f64::total_cmp);
     loop {
         let n = ws.len();
         let mut spans: Vec<f64> = ws.windows(2).map(|w| w[1] - w[0]).collect();
