@@ -11,7 +11,7 @@ use crate::mesh::data::face_geometry::FaceNodes;
 use crate::mesh::data::face_mesh::FaceMesh;
 use crate::mesh::data::mesh::Mesh;
 use crate::mesh::deviation::proof::Proof;
-use crate::mesh::deviation::{certify, measure};
+use crate::mesh::deviation::{certify, measure, poles};
 use crate::mesh::divide::row_demand::RowDemand;
 use crate::mesh::mapped::grid::Grid;
 use crate::mesh::request::fault::MeshLimit;
@@ -219,29 +219,23 @@ fn turns(surface: &Surface, finished: &Finished, limits: &Limits, limit: f64, ve
     }
 }
 
-/// How far from a pole its normals are looked at, as a share of the way to the next place.
-const BESIDE_POLE: f64 = 1.0 / 64.0;
-
 /// The largest turns over cells of a grid: along u, along v, and in all.
 fn turns_of_grid(surface: &Surface, grid: &Grid, poles: [bool; 4]) -> [f64; 3] {
     let (nu, nv) = grid.size();
     let parts = |n: usize| SETTINGS.min_samples.div_ceil(n).min(SETTINGS.max_cell_samples);
     let (ku, kv) = (parts(nu), parts(nv));
     let lean = |last: bool| if last { OneSided::Before } else { OneSided::After };
-    // The tip of a cone has as many normals as directions: each line to it has its own, just before it.
-    let share = |k: usize, parts: usize, [first, last]: [bool; 2]| match k {
-        0 if first => BESIDE_POLE / parts as f64,
-        k if last && k == parts => 1.0 - BESIDE_POLE / parts as f64,
-        k => k as f64 / parts as f64,
-    };
+    let tangents = |at: DVec2| surface.evaluator().tangents(at.x, at.y);
     let line = |j: usize, y: usize| -> Vec<DVec3> {
-        let y_share = share(y, kv, [poles[0] && j == 0, poles[2] && j + 1 == nv]);
         (0..=nu * ku)
             .map(|n| {
                 let i = (n / ku).min(nu - 1);
-                let x_share = share(n - i * ku, ku, [poles[3] && i == 0, poles[1] && i + 1 == nu]);
-                let (u, v) = inside(grid, (i, j), (x_share, y_share));
-                surface.normal_one_sided(u, v, (lean(n == nu * ku), lean(j + 1 == nv && y == kv)))
+                let (u, v) = inside(grid, (i, j), ((n - i * ku) as f64 / ku as f64, y as f64 / kv as f64));
+                let (on_u, on_v) = ([n == 0, n == nu * ku], [j == 0 && y == 0, j + 1 == nv && y == kv]);
+                // Each line to the tip of a cone has its own normal there.
+                let at_pole = poles[0] && on_v[0] || poles[1] && on_u[1] || poles[2] && on_v[1] || poles[3] && on_u[0];
+                let of_pole = at_pole.then(|| poles::normal(surface, &tangents, DVec2::new(u, v))).flatten();
+                of_pole.unwrap_or_else(|| surface.normal_one_sided(u, v, (lean(on_u[1]), lean(on_v[1]))))
             })
             .collect()
     };
@@ -271,18 +265,20 @@ fn inside(grid: &Grid, (i, j): (usize, usize), (x, y): (f64, f64)) -> (f64, f64)
 /// The largest turn over the cells of a lattice, of blocks or of a free face.
 fn turn_of_cells(surface: &Surface, nodes: &FaceNodes) -> f64 {
     let uv = nodes.listed_uv();
+    let normals: Vec<DVec3> = uv.iter().map(|(u, v)| surface.normal(*u, *v)).collect();
     let few = uv.len() < SETTINGS.min_samples * SETTINGS.min_samples;
     let mut worst = 0.0_f64;
     nodes.each_listed_cell(|corners| {
         let places: Vec<DVec2> = corners.iter().map(|c| uv[*c].into()).collect();
         let middle = places.iter().sum::<DVec2>() / places.len() as f64;
         // Seen from inside the cell: along a crease there are two normals.
-        let normal = |at: DVec2| surface.normal_on_crease(at, middle).unwrap_or_else(|| surface.normal(at.x, at.y));
-        let mut own: Vec<DVec3> = places.iter().copied().map(normal).collect();
+        let on_crease = |at: DVec2| surface.normal_on_crease(at, middle);
+        let mut own: Vec<DVec3> = corners.iter().zip(&places).map(|(c, at)| on_crease(*at).unwrap_or(normals[*c])).collect();
         if few {
             // The middles of sides and diagonals.
             for (k, a) in places.iter().enumerate() {
-                own.extend(places[k + 1..].iter().map(|b| normal(a.midpoint(*b))));
+                let middles = places[k + 1..].iter().map(|b| a.midpoint(*b));
+                own.extend(middles.map(|at| on_crease(at).unwrap_or_else(|| surface.normal(at.x, at.y))));
             }
         }
         worst = worst.max(widest_angle(&own));

@@ -274,8 +274,8 @@ fn turn_ratio(chart: &Chart, xy: [DVec2; 3], places: [DVec2; 3], limits: &Limits
         let columns = from_pole(&tangents, places);
         let middle = (places[0] + places[1] + places[2]) / 3.0;
         let normal = |k: usize| {
-            let of_pole = || poles::normal(chart.surface(), &tangents, columns[k]);
-            chart.surface().normal_on_crease(places[k], middle).or_else(of_pole).unwrap_or_else(|| chart.spot(xy[k]).normal())
+            let on_crease = || chart.surface().normal_on_crease(places[k], middle);
+            poles::normal(chart.surface(), &tangents, columns[k]).or_else(on_crease).unwrap_or_else(|| chart.spot(xy[k]).normal())
         };
         let normals = [0, 1, 2].map(normal);
         let turn = |i: usize, j: usize| angle_between(normals[i], normals[j]);

@@ -194,5 +194,5 @@ fn law_missed(say: &dyn Say, surface: Origin, law: &str, (off, share): (f64, f64
         few(100.0 * share)
     ))
     .at(surface, "made here")
-    .help("write the guide first that bends most there: stations are as close as it needs; or give a section there")
+    .help("list the guide that bends most there first, or add a section there")
 }

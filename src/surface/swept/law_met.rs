@@ -20,12 +20,12 @@ pub struct Missed {
     /// Fractions of the main guide half way between stations where it is off by more than [`SHARE`].
     pub fractions: Vec<f64>,
     /// The place with the largest distance as a share of the section's length.
-    pub worst: Place,
+    pub worst: Miss,
 }
 
-/// A place at which a surface is compared with the section that its law asks for.
+/// A point of a section that the law asks for, off the surface.
 #[derive(Clone, Copy, Default)]
-pub struct Place {
+pub struct Miss {
     /// The point of the section.
     pub at: DVec3,
     /// Its distance from the surface.
@@ -50,7 +50,7 @@ pub fn missed(surface: &Surface, net: &SweepNet, tolerance: &Tolerance) -> Misse
         if off > tolerance.point && off > SHARE * length {
             missed.fractions.push(rib.w);
             if off / length > missed.worst.share {
-                missed.worst = Place { at, off, share: off / length };
+                missed.worst = Miss { at, off, share: off / length };
             }
         }
     }

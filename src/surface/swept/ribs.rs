@@ -47,7 +47,7 @@ impl Given<'_> {
         let ws: Vec<f64> = places.iter().map(|place| place.w).collect();
         let given = |w: f64| self.sections.iter().any(|s| s.on_guides[0] == w);
         let cut = match self.cut(made, &ws) {
-            // Where only sections to look at are made from others, they decide nothing.
+            // All stations are given sections, and those that are only compared with the surface fail no sweep.
             Err(_) if places.iter().all(|place| place.halfway || given(place.w)) => None,
             found => Some(found?),
         };

@@ -26,7 +26,7 @@ use crate::surface::shapes::blend::Blend;
 use crate::surface::shapes::cardinal::{End, ended, slopes};
 use crate::surface::shapes::rule::Rule;
 use crate::surface::shapes::weights::BlendAxis;
-use crate::surface::swept::law_met::{Missed, Place, missed};
+use crate::surface::swept::law_met::{Miss, Missed, missed};
 use crate::surface::swept::laws::Law;
 use crate::surface::swept::sections::Guide;
 use crate::surface::swept::single::single;
@@ -47,29 +47,30 @@ pub fn sweep(input: &Input, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault
         return Ok(done);
     }
     let mut guides: Vec<Guide> = input.guides.iter().map(Guide::new).collect();
-    let (mut more, mut best): (Vec<f64>, Option<Swept>) = (Vec::new(), None);
-    for _ in 0..ROUNDS {
+    let mut more: Vec<f64> = Vec::new();
+    let mut swept = denser(input, &mut guides, &more, tolerance)?;
+    for _ in 1..MOST {
+        if swept.missed.fractions.is_empty() {
+            break;
+        }
+        more.extend(&swept.missed.fractions);
         match denser(input, &mut guides, &more, tolerance) {
-            Ok(swept) if swept.missed.fractions.is_empty() => return Ok((swept.surface, swept.notes)),
-            Ok(swept) => {
-                more.extend(&swept.missed.fractions);
-                best = Some(swept);
-            }
-            // What more stations lose is no reason to refuse those that there are.
-            Err(fault) if fault.of::<CurveFault>().is_some() && best.is_some() => break,
+            Ok(nearer) => swept = nearer,
+            // Curves that cannot be made through so many stations: the surface through fewer of them stands, with its warning.
+            Err(fault) if fault.of::<CurveFault>().is_some() => break,
             Err(fault) => return Err(fault),
         }
     }
-    let Some(Swept { surface, mut notes, missed: Missed { worst: Place { at, off, share }, .. } }) = best else {
-        return Err(CurveFault::NotConverged { of: input.origin, what: "a sweep".to_owned(), at: input.guides[0].start() }.into());
-    };
-    notes.push(SweepFault::LawMissed { surface: input.origin, law: input.law.name(), off, share, at }.into());
+    let Swept { surface, mut notes, missed: Missed { fractions, worst: Miss { at, off, share } } } = swept;
+    if !fractions.is_empty() {
+        notes.push(SweepFault::LawMissed { surface: input.origin, law: input.law.name(), off, share, at }.into());
+    }
     Ok((surface, notes))
 }
 
-/// A surface is made so many times at most, each time with more stations where it is off its law: it comes nearer by a factor of 16 where guides and
-/// sections change smoothly.
-const ROUNDS: usize = 9;
+/// A surface is made at most so many times, with more stations each time. Where guides and sections are smooth, each time brings it
+/// nearer to its law by a factor of 16.
+const MOST: usize = 9;
 
 /// A surface with its notes, and where it is off its law.
 struct Swept {

@@ -139,7 +139,7 @@ pub fn net(input: &Input, guides: &[Guide], more: &[f64], tolerance: &Tolerance)
         let station = main.station(w);
         match on_guides(&guides, &sections, &station, law, places.last().map(|place| &place.on_guides), tolerance) {
             Ok(Ok(on_guides)) => places.push(Place { w, on_guides, halfway }),
-            // What is only looked at decides nothing.
+            // A section that is only compared with the surface fails no sweep.
             _ if halfway => {}
             Ok(Err(short)) => return Ok(Err(short)),
             Err(fault) => return Err(fault),
