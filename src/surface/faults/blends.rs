@@ -42,11 +42,13 @@ pub enum NoBlend {
         /// Where.
         at: DVec3,
     },
-    /// The surface runs on beyond the edge, and the point to keep is on neither side of it.
-    KeepOnEdge {
+    /// A surface runs on beyond the edge, and the point to keep is on the other one, which parts its sides.
+    KeepOn {
         /// The surface.
         surface: Origin,
-        /// The place of the edge nearest to the point.
+        /// The other one.
+        on: Origin,
+        /// The point.
         at: DVec3,
     },
     /// No radius fits.
@@ -141,13 +143,13 @@ fn no_edge((a, b): (Origin, Origin), why: &NoBlend, say: &dyn Say) -> Report {
             Report::new(format!("the rounding of {x} and {y} crosses the border of {name} at {}", say.point(*at)))
                 .help(format!("take a smaller `radius:`, or blend before {name} is cut there"))
         }
-        NoBlend::KeepOnEdge { surface, at } => {
-            let name = say.quoted(*surface, "a surface");
+        NoBlend::KeepOn { surface, on, at } => {
+            let (name, other) = (say.quoted(*surface, "a surface"), say.quoted(*on, "the other one"));
             Report::new(format!(
-                "`keep:` does not determine which side of {name} stays: along the surface the point is on the edge, at {}",
+                "`keep:` does not determine which side of {name} stays: {} is on {other}, with {name} on both sides of it",
                 say.point(*at)
             ))
-            .help(format!("{name} extends past the edge: choose a point away from the edge along both surfaces"))
+            .help(format!("{name} extends past the edge: choose a point that is on neither surface, as where the ball is"))
         }
         NoBlend::NoRadius { at } => Report::new(format!("no ball touches both {x} and {y} near {}", say.point(*at)))
             .help("`-s` puts the ball on the other side of a surface"),

@@ -24,7 +24,7 @@ const PROBE: f64 = 1.0 / 8192.0;
 /// A place of the edge from which the ball starts.
 pub(crate) struct BallStart {
     pub at: DVec3,
-    along: DVec3,
+    pub along: DVec3,
     uv: [DVec2; 2],
     /// Unit directions on both surfaces, across the edge, to where the ball touches.
     out: [DVec3; 2],
@@ -76,35 +76,32 @@ impl Ball {
         Ok(BallStart { at: jet.p, along, uv, out: normals.map(|n| n.cross(along).normalize_or_zero()) })
     }
 
-    /// Turns the directions away from the edge to where the ball is, and finds its side of each surface: where a surface runs on
-    /// beyond the edge that of `keep`.
+    /// Finds on which side of each surface the ball is, and turns the directions away from the edge to where it touches.
     fn choose_sides(&mut self, keep: Option<DVec3>) -> Result<()> {
         let middle = &self.starts[STARTS / 2];
         let step = PROBE * self.edge.length();
         let normals = [0, 1].map(|k: usize| unit_normal(&self.faces[k].jet(middle.uv[k])).unwrap_or_default());
-        let near = |p: DVec3| self.starts.iter().min_by(|s, t| s.at.distance(p).total_cmp(&t.at.distance(p)));
-        let kept = keep.and_then(|p| near(p).map(|start| (start, p - start.at)));
-        let turn = |k: usize| {
-            let out = middle.out[k];
-            let runs = [out, -out].map(|d| self.faces[k].runs_on(middle.at, d, step));
-            match (runs, kept) {
-                ([true, false], _) => Ok(1.0),
-                ([false, true], _) => Ok(-1.0),
-                (_, Some((start, to))) => {
-                    let ahead = to.dot(start.out[k]);
-                    let decides = ahead.abs() > self.tolerance.point;
-                    decides
-                        .then_some(ahead.signum())
-                        .ok_or_else(|| self.fault(NoBlend::KeepOnEdge { surface: self.origins[k], at: start.at }))
-                }
-                // The ball is on the side of the other one's normal.
-                _ => Ok(out.dot(normals[1 - k]).signum()),
+        // It is on the side of a surface on which the other one goes on; where that goes on on both, on that of `keep`, or of the normal.
+        let side = |k: usize| {
+            let out = middle.out[1 - k];
+            match [out, -out].map(|d| self.faces[1 - k].runs_on(middle.at, d, step)) {
+                [true, false] => Ok(normals[k].dot(out).signum()),
+                [false, true] => Ok(-normals[k].dot(out).signum()),
+                _ => keep.map_or(Ok(1.0), |p| {
+                    // On the surface itself it is on the side to which it is seen from the edge.
+                    let (height, from) = (self.faces[k].height(p), self.edge.closest(p).1);
+                    let is_on = height.abs() <= self.tolerance.point;
+                    let height = if is_on { (p - from).dot(self.faces[k].normal_at(from)) } else { height };
+                    let decides = height.abs() > self.tolerance.point;
+                    let (surface, on) = (self.origins[1 - k], self.origins[k]);
+                    decides.then_some(height.signum()).ok_or_else(|| self.fault(NoBlend::KeepOn { surface, on, at: p }))
+                }),
             }
         };
-        let turns = [turn(0)?, turn(1)?];
-        for k in 0..2 {
-            let other = middle.out[1 - k] * turns[1 - k];
-            self.faces[k].side = normals[k].dot(other).signum();
+        let sides = [side(0)?, side(1)?];
+        let turns = [0, 1].map(|k: usize| (middle.out[k].dot(normals[1 - k]) * sides[1 - k]).signum());
+        for (face, side) in self.faces.iter_mut().zip(sides) {
+            face.side = side;
         }
         for start in &mut self.starts {
             for (out, turn) in start.out.iter_mut().zip(turns) {
@@ -192,27 +189,10 @@ impl Ball {
         !self.closed && ends.into_iter().any(|s| (station.center - s.at).dot(s.along).abs() <= self.tolerance.point)
     }
 
-    /// More balls beyond the ends of an open edge, until they touch inside no surface.
-    pub fn run_out(&self, radius: f64, stations: &mut Vec<BallStation>) {
-        const MOST: usize = 16;
-        for _ in 0..2 {
-            for _ in 0..MOST {
-                let last = stations[stations.len() - 1];
-                let inside = |k: &usize| {
-                    let (face, foot, point) = (&self.faces[*k], last.feet[*k], self.tolerance.point);
-                    face.distance(foot) <= 2.0 * point && !face.on_border(foot, 2.0 * point)
-                };
-                let Some(k) = (0..2).find(inside) else { break };
-                let step = last.feet[k].distance(self.edge.closest(last.feet[k]).1);
-                let Some(next) = self.station(radius, (last.center + last.way * step, last.way), &Guess { uv: last.uv, points: last.feet })
-                else {
-                    break;
-                };
-                stations.push(next);
-            }
-            stations.reverse();
-            stations.iter_mut().for_each(BallStation::turn);
-        }
+    /// Whether it touches a surface inside its kept part.
+    pub fn is_inside(&self, station: &BallStation, k: usize) -> bool {
+        let (face, foot, near) = (&self.faces[k], station.feet[k], 2.0 * self.tolerance.point);
+        face.distance(foot) <= near && !face.on_border(foot, near)
     }
 }
 

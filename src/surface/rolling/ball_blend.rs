@@ -34,8 +34,9 @@ pub fn rolling([a, b]: [&Surface; 2], radius: f64, keep: Option<DVec3>, origin: 
     let ball = Ball::new([a, b], edge, keep, tolerance)?;
     let made = |stations, radius: f64| -> Result<Vec<Surface>> {
         let roll = ended(&ball, rolled(&ball, radius, stations, origin)?, origin)?;
-        let side = |k: usize| cut_back(&ball, k, &roll.contacts[k], origin);
-        Ok(vec![side(0)?.cut_from(std::slice::from_ref(a)), roll.surface, side(1)?.cut_from(std::slice::from_ref(b))])
+        let side = |k: usize| cut_back(&ball, k, &roll, origin);
+        let (first, second) = (side(0)?.cut_from(std::slice::from_ref(a)), side(1)?.cut_from(std::slice::from_ref(b)));
+        Ok(vec![first, roll.surface, second])
     };
     let is_made = |stations, radius: f64| made(stations, radius).is_ok();
     let stations = largest::stations(&ball, radius, origin, is_made)?;

@@ -15,6 +15,7 @@ use crate::surface::core::surface::{Parts, Surface};
 use crate::surface::data::jet::Jet2;
 use crate::surface::data::kind::SurfaceKind;
 use crate::surface::data::one_sided::OneSided;
+use crate::surface::rolling::along::turn;
 use crate::surface::rolling::ball::{Ball, Guess};
 use crate::surface::rolling::breaks::{with_breaks, with_middles, with_sides};
 use crate::surface::rolling::station::BallStation;
@@ -26,6 +27,8 @@ use crate::surface::swept::revolve::{Axis, revolve};
 const SHARE: f64 = 0.25;
 /// Share of it within which a roll is straight or round.
 const EXACT: f64 = 1.0 / 64.0;
+/// An arc above this angle is made of two halves.
+const WIDE: f64 = 2.0 * std::f64::consts::FRAC_PI_3;
 /// Stations at the most.
 const MOST: usize = 4096;
 
@@ -47,7 +50,8 @@ pub(crate) fn rolled(ball: &Ball, radius: f64, stations: Vec<BallStation>, origi
             Some(surface) => surface,
             None => {
                 let sides = with_sides(ball, radius, &pieces);
-                net(&refined(ball, radius, sides, origin)?, radius).surface(SurfaceKind::Blend, origin, tolerance)
+                let halves = halved(&all);
+                net(&refined(ball, radius, sides, halves, origin)?, radius, halves).surface(SurfaceKind::Blend, origin, tolerance)
             }
         },
     };
@@ -65,8 +69,7 @@ fn turned(ball: &Ball, mut stations: Vec<BallStation>) -> Vec<BallStation> {
     let s = &stations[stations.len() / 2];
     let normal = (s.center - s.feet[0]) * ball.faces[0].side;
     if s.way.cross(-ball.away(s, 0)).dot(normal) < 0.0 {
-        stations.reverse();
-        stations.iter_mut().for_each(BallStation::turn);
+        turn(&mut stations);
     }
     stations
 }
@@ -128,7 +131,7 @@ fn round(stations: &[BallStation], all: &[BallStation], closed: bool, origin: Or
 }
 
 /// More stations where the net through those that are there leaves the ball.
-fn refined(ball: &Ball, radius: f64, stations: Vec<BallStation>, origin: Origin) -> Result<Vec<BallStation>> {
+fn refined(ball: &Ball, radius: f64, stations: Vec<BallStation>, halves: bool, origin: Origin) -> Result<Vec<BallStation>> {
     let lost = |at: DVec3| CurveFault::NotConverged { of: origin, what: "the way of the ball".to_owned(), at };
     let mut done = vec![stations[0]];
     let mut open: Vec<BallStation> = stations[1..].iter().rev().copied().collect();
@@ -139,7 +142,7 @@ fn refined(ball: &Ball, radius: f64, stations: Vec<BallStation>, origin: Origin)
             done.push(next);
             continue;
         }
-        match off(ball, radius, &last, &next).ok_or_else(|| lost(last.center))? {
+        match off(ball, radius, halves, &last, &next).ok_or_else(|| lost(last.center))? {
             None => done.push(next),
             Some(_) if done.len() + open.len() > MOST || length_between(&last, &next) <= ball.tolerance.point => {
                 return Err(lost(next.center).into());
@@ -151,9 +154,9 @@ fn refined(ball: &Ball, radius: f64, stations: Vec<BallStation>, origin: Origin)
 }
 
 /// A ball between two stations, about in the middle, where the net between them is off at some place; outer none where none is found.
-fn off(ball: &Ball, radius: f64, a: &BallStation, b: &BallStation) -> Option<Option<BallStation>> {
+fn off(ball: &Ball, radius: f64, halves: bool, a: &BallStation, b: &BallStation) -> Option<Option<BallStation>> {
     const PLACES: [f64; 3] = [0.25, 0.5, 0.75];
-    let piece = net(&[*a, *b], radius);
+    let piece = net(&[*a, *b], radius, halves);
     let allowed = SHARE * ball.tolerance.point;
     let side = (OneSided::After, OneSided::After);
     let mut middle = None;
@@ -203,29 +206,52 @@ fn length_of(a: (DVec3, DVec3), b: (DVec3, DVec3)) -> f64 {
     if half > 0.0 { chord * half / math::sin(half) } else { chord }
 }
 
-/// The three homogeneous poles of a station's arc and their derivatives by the mean length of the ways.
-fn poles(s: &BallStation, radius: f64) -> [(DVec4, DVec4); 3] {
-    let middle = s.feet[0] + s.feet[1] - s.center * 2.0;
-    let rate = s.rates[0] + s.rates[1] - s.way * 2.0;
+/// A homogeneous pole and its derivative by the length of the centre's way.
+type MovingPole = (DVec4, DVec4);
+
+/// The poles of a station's arc: three, or five where it is made of two halves; derivatives by the mean length of the ways.
+fn poles(s: &BallStation, radius: f64, halves: bool) -> Vec<MovingPole> {
+    let foot = |k: usize| (s.feet[k], s.rates[k]);
+    let all = if halves {
+        let middle = s.feet[0] + s.feet[1] - s.center * 2.0;
+        let (length, rate) = (middle.length(), s.rates[0] + s.rates[1] - s.way * 2.0);
+        let half = (s.center + middle * (radius / length), s.way + rate.reject_from(middle) * (radius / length));
+        [arc_poles(s, [foot(0), half], radius).as_slice(), &arc_poles(s, [half, foot(1)], radius)[1..]].concat()
+    } else {
+        arc_poles(s, [foot(0), foot(1)], radius).to_vec()
+    };
+    all.into_iter().map(|(p, d)| (p, d / s.speed())).collect()
+}
+
+/// The three poles of the arc about a station's centre between two points with their rates.
+fn arc_poles(s: &BallStation, ends: [(DVec3, DVec3); 2], radius: f64) -> [MovingPole; 3] {
+    let middle = ends[0].0 + ends[1].0 - s.center * 2.0;
+    let rate = ends[0].1 + ends[1].1 - s.way * 2.0;
     let length = middle.length();
     let weight = length / (2.0 * radius);
     let length_rate = middle.dot(rate) / length;
     let weight_rate = length_rate / (2.0 * radius);
     let apex = s.center * weight + middle * (radius / length);
     let apex_rate = s.center * weight_rate + s.way * weight + (rate - middle * (length_rate / length)) * (radius / length);
-    let foot = |k: usize| (s.feet[k].extend(1.0), s.rates[k].extend(0.0));
-    [foot(0), (apex.extend(weight), apex_rate.extend(weight_rate)), foot(1)].map(|(p, d)| (p, d / s.speed()))
+    let end = |k: usize| (ends[k].0.extend(1.0), ends[k].1.extend(0.0));
+    [end(0), (apex.extend(weight), apex_rate.extend(weight_rate)), end(1)]
+}
+
+/// Whether arcs are made of two halves: the middle pole of one that is nearly half a circle is far away, and its weight is small.
+fn halved(stations: &[BallStation]) -> bool {
+    let angle = |s: &BallStation| math::angle_between(s.feet[0] - s.center, s.feet[1] - s.center);
+    stations.iter().any(|s| angle(s) > WIDE)
 }
 
 /// The net through some stations: arcs along v, cubics along u. Their derivatives are continuous, but where a station is there twice
 /// each side has its own.
-fn net(stations: &[BallStation], radius: f64) -> NurbsSurface {
+fn net(stations: &[BallStation], radius: f64, halves: bool) -> NurbsSurface {
     let steps: Vec<f64> = stations.windows(2).map(|w| length_between(&w[0], &w[1])).collect();
     let total: f64 = steps.iter().sum();
-    let rows: Vec<_> = stations.iter().map(|s| poles(s, radius)).collect();
-    let (n, twice) = (stations.len(), |i: usize| stations[i].center == stations[i + 1].center);
-    let mut all = Vec::with_capacity(6 * n);
-    for k in 0..3 {
+    let rows: Vec<_> = stations.iter().map(|s| poles(s, radius, halves)).collect();
+    let (n, across, twice) = (stations.len(), rows[0].len(), |i: usize| stations[i].center == stations[i + 1].center);
+    let mut all = Vec::with_capacity(2 * across * n);
+    for k in 0..across {
         for (i, row) in rows.iter().enumerate() {
             let (p, d) = row[k];
             if i == 0 {
@@ -248,6 +274,7 @@ fn net(stations: &[BallStation], radius: f64) -> NurbsSurface {
         knots.extend(std::iter::repeat_n(way / total, if twice(i) { 1 } else { 2 }));
     }
     knots.extend([1.0; 4]);
-    let across = vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
-    NurbsSurface { degree: (3, 2), counts: (all.len() / 3, 3), knots: (knots, across), poles: all }
+    let inner: &[f64] = if halves { &[0.5, 0.5] } else { &[] };
+    let knots = (knots, [&[0.0; 3], inner, &[1.0; 3]].concat());
+    NurbsSurface { degree: (3, 2), counts: (all.len() / across, across), knots, poles: all }
 }

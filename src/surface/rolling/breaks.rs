@@ -19,8 +19,6 @@ struct BreakLine {
     face: usize,
     axis: usize,
     at: f64,
-    /// About how far it is from one station to the next, 0…1.
-    share: f64,
 }
 
 /// Stations with those between them that touch a surface on one of its breaks; those very near to one give way to it.
@@ -35,7 +33,6 @@ pub(crate) fn with_breaks(ball: &Ball, radius: f64, stations: &[BallStation]) ->
                 lines.extend(crossed(ball, pair, face, axis, breaks));
             }
         }
-        lines.sort_by(|x, y| x.share.total_cmp(&y.share));
         let found = on_lines(ball, radius, pair, &lines);
         // The first of the two may have given way already.
         let gave_way = all.last().is_none_or(|last| last.center != pair[0].center);
@@ -68,7 +65,7 @@ pub(crate) fn with_middles(ball: &Ball, radius: f64, stations: &[BallStation]) -
             .fold((0, 0, 0.0), |x, y| if y.2 > x.2 { y } else { x });
         if reach > ball.tolerance.point {
             let at = pair[0].uv[face][axis] + 0.5 * step(ball, pair, face)[axis];
-            all.extend(on_lines(ball, radius, pair, &[BreakLine { face, axis, at, share: 0.5 }]));
+            all.extend(on_lines(ball, radius, pair, &[BreakLine { face, axis, at }]));
         }
         all.push(pair[1]);
     }
@@ -85,26 +82,55 @@ fn crossed(ball: &Ball, pair: &[BallStation], face: usize, axis: usize, breaks: 
     let (from, d) = (pair[0].uv[face][axis], step(ball, pair, face)[axis]);
     let first = if ball.faces[face].is_closed(axis) { from.min(from + d).floor() } else { 0.0 };
     let all = [0.0, 1.0].into_iter().flat_map(|turn| breaks.iter().map(move |at| at + first + turn));
-    let lines = all.map(|at| BreakLine { face, axis, at, share: (at - from) / d });
-    lines.filter(|line| line.share > 0.0 && line.share < 1.0).collect()
+    let between = |at: &f64| (at - from) / d > 0.0 && (at - from) / d < 1.0;
+    all.filter(between).map(|at| BreakLine { face, axis, at }).collect()
 }
 
-/// The balls on lines between two stations, where there are some, apart from each other and not the same as both.
+/// The balls on lines between two stations, where there are some, in order, apart from each other and not the same as both.
 fn on_lines(ball: &Ball, radius: f64, pair: &[BallStation], lines: &[BreakLine]) -> Vec<BallStation> {
     let mut found: Vec<BallStation> = Vec::new();
     for line in lines {
-        let f = line.share;
-        let mut uv = [0, 1].map(|k: usize| pair[0].uv[k] + step(ball, pair, k) * f);
-        uv[line.face][line.axis] = line.at;
-        let guess = Guess { uv, points: [0, 1].map(|k: usize| pair[0].feet[k].lerp(pair[1].feet[k], f)) };
-        let place = Place::Line { face: line.face, axis: line.axis, at: line.at, along: pair[0].way + pair[1].way };
-        let Some(next) = ball.at(radius, &place, &guess) else { continue };
+        let Some(next) = on_line(ball, radius, [pair[0], pair[1]], *line) else { continue };
         let same = |s: &BallStation| s.feet[line.face].distance(next.feet[line.face]) <= SAME * ball.tolerance.point;
-        if !same(&pair[0]) && !same(&pair[1]) && !found.last().is_some_and(|last| near(ball, last, &next)) {
+        if !same(&pair[0]) && !same(&pair[1]) {
             found.push(next);
         }
     }
+    let ahead = |s: &BallStation| (s.center - pair[0].center).dot(pair[0].way + pair[1].way);
+    found.sort_by(|s, t| ahead(s).total_cmp(&ahead(t)));
+    found.dedup_by(|next, last| near(ball, last, next));
     found
+}
+
+/// The ball on a line between two stations that touch on both sides of it. Where the contact runs nearly along the line Newton's method
+/// may find another place on it: then the stations are taken nearer to each other.
+fn on_line(ball: &Ball, radius: f64, mut pair: [BallStation; 2], mut line: BreakLine) -> Option<BallStation> {
+    const HALVINGS: usize = 24;
+    for _ in 0..HALVINGS {
+        let along = pair[0].way + pair[1].way;
+        let between = |s: &BallStation| (s.center - pair[0].center).dot(along) >= 0.0 && (pair[1].center - s.center).dot(along) >= 0.0;
+        let guess = |f: f64| {
+            let uv = [0, 1].map(|k: usize| pair[0].uv[k] + step(ball, &pair, k) * f);
+            Guess { uv, points: [0, 1].map(|k: usize| pair[0].feet[k].lerp(pair[1].feet[k], f)) }
+        };
+        let from = pair[0].uv[line.face][line.axis];
+        let mut near = guess(((line.at - from) / step(ball, &pair, line.face)[line.axis]).clamp(0.0, 1.0));
+        near.uv[line.face][line.axis] = line.at;
+        let place = Place::Line { face: line.face, axis: line.axis, at: line.at, along };
+        if let Some(found) = ball.at(radius, &place, &near).filter(between) {
+            return Some(found);
+        }
+        let plane = (pair[0].center.lerp(pair[1].center, 0.5), along.normalize_or_zero());
+        let middle = ball.station(radius, plane, &guess(0.5)).filter(between)?;
+        let at = ball.faces[line.face].turned_to(middle.uv[line.face], pair[0].uv[line.face])[line.axis];
+        if (from - line.at) * (at - line.at) > 0.0 {
+            line.at += middle.uv[line.face][line.axis] - at;
+            pair[0] = middle;
+        } else {
+            pair[1] = middle;
+        }
+    }
+    None
 }
 
 /// Stations twice where the points that touch have other speeds before than after them: each with those of its side.

@@ -82,6 +82,12 @@ impl Face {
         unit_normal(&self.jet(self.uv_of(p))).unwrap_or_default()
     }
 
+    /// How far a point is from the whole surface, on the side of its normal.
+    pub(crate) fn height(&self, p: DVec3) -> f64 {
+        let jet = self.jet(self.uv_of(p));
+        (p - jet.p).dot(unit_normal(&jet).unwrap_or_default())
+    }
+
     /// The nearest point of the whole surface.
     pub fn foot(&self, p: DVec3) -> DVec3 {
         self.jet(self.uv_of(p)).p
@@ -92,11 +98,6 @@ impl Face {
         let closed = self.ground.closed();
         let turn = |x: f64, near: f64, closed: bool| if closed { x + (near - x).round() } else { x };
         DVec2::new(turn(uv.x, to.x, closed.0), turn(uv.y, to.y, closed.1))
-    }
-
-    /// The nearest point of the kept part.
-    pub fn nearest(&self, p: DVec3) -> DVec3 {
-        self.near.at(p).point
     }
 
     /// Distance of a point from the kept part.

@@ -29,8 +29,7 @@ pub(crate) fn stations(
     origin: Origin,
     is_made: impl Fn(Vec<BallStation>, f64) -> bool,
 ) -> Result<Vec<BallStation>> {
-    let of = |radius: f64| all(ball, radius);
-    of(radius).map_err(|at| {
+    ball.stations(radius).map_err(|at| {
         let mut fits = radius;
         for _ in 0..SMALLER {
             fits *= 0.5;
@@ -46,7 +45,7 @@ pub(crate) fn stations(
             let middle = 0.5 * (low + high);
             if ball.stations(middle).is_ok() { low = middle } else { high = middle }
         }
-        let makes = |radius: f64| of(radius).is_ok_and(|all| is_made(all, radius));
+        let makes = |radius: f64| ball.stations(radius).is_ok_and(|all| is_made(all, radius));
         if !makes(low * STATED) {
             let (mut made, mut not) = (0.0, low * STATED);
             for _ in 0..MADE {
@@ -70,7 +69,7 @@ pub(crate) fn above_made(
     origin: Origin,
     is_made: impl Fn(Vec<BallStation>, f64) -> bool,
 ) -> Option<Fault> {
-    let makes = |radius: f64| all(ball, radius).is_ok_and(|all| is_made(all, radius));
+    let makes = |radius: f64| ball.stations(radius).is_ok_and(|all| is_made(all, radius));
     let (mut low, mut high) = (FROM * radius, radius);
     if !makes(low) {
         return None;
@@ -80,15 +79,6 @@ pub(crate) fn above_made(
         if makes(middle) { low = middle } else { high = middle }
     }
     Some(too_large(ball, radius, low, ball.edge.closest(at).1, origin))
-}
-
-/// The balls of a radius, beyond the ends of an open edge too; where there are none, the place.
-fn all(ball: &Ball, radius: f64) -> std::result::Result<Vec<BallStation>, DVec3> {
-    let mut all = ball.stations(radius)?;
-    if !ball.closed {
-        ball.run_out(radius, &mut all);
-    }
-    Ok(all)
 }
 
 fn too_large(ball: &Ball, radius: f64, largest: f64, at: DVec3, origin: Origin) -> Fault {

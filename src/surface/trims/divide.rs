@@ -81,6 +81,33 @@ pub fn divide(base: &Surface, cutters: &[Chain], keep: DVec3, origin: Origin, to
     if near.len() == 1 { near.pop().ok_or(fault) } else { Err(fault) }
 }
 
+/// Divides a surface by a curve on it, together with its own border, and keeps the part beside the curve on the side to which `away`
+/// looks from its places; fails as [`divide`] does.
+pub fn beside(base: &Surface, cutter: &Chain, away: impl Fn(DVec3) -> DVec3, origin: Origin, tolerance: &Tolerance) -> Result<Surface> {
+    let base = &plane::unmapped(base, tolerance)?;
+    let dividing = dividing(base, std::slice::from_ref(cutter), Meets::Anywhere, tolerance)?;
+    let cells = Cells::new(base, &dividing.pieces, &dividing.edges, tolerance)?;
+    let (whole, mut kept) = (base.untrimmed(), vec![false; cells.count()]);
+    for (i, piece) in dividing.pieces.iter().enumerate() {
+        let (TrimCurve::Pcurve(pcurve), Some(chain), false) = (&piece.trim_curve, piece.own_chain(), piece.seam || piece.rim) else {
+            continue;
+        };
+        let middle = pcurve.fraction(0.5);
+        let at = chain.jet(middle);
+        let (uv, _) = foot::foot(base.evaluator(), at.p, pcurve.guess(middle));
+        let jet = whole.jet(uv.x, uv.y);
+        let left = jet.du.cross(jet.dv).cross(at.d1 * (pcurve.fraction(1.0) - pcurve.fraction(0.0)));
+        let [on_left, on_right] = cells.beside(i);
+        if let Some(cell) = if left.dot(away(at.p)) > 0.0 { on_left } else { on_right } {
+            kept[cell] = true;
+        }
+    }
+    match cells.faces_of(&kept)?.as_slice() {
+        [face] => assembled(base, trim_loops(&dividing.pieces, face), origin),
+        _ => Err(CutFault::NothingParted { surface: base.origin(), at: cutter.point(0.5), tolerance: tolerance.point }.into()),
+    }
+}
+
 /// Share of the size of a surface within which a point beside a part stands for that part.
 const KEEP_SHARE: f64 = 1.0 / 1000.0;
 

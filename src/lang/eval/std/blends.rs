@@ -12,8 +12,9 @@ builtins! {
     ///
     /// A list of three: the first surface cut back, the rounding, the second one cut back. The rounding is the envelope of a ball that
     /// rolls along the edge and touches both; it joins both smoothly. u runs along the edge, v from the first surface to the second;
-    /// its normal is on the side of the first one's. Where a surface extends past the edge, its part on the side of the point
-    /// `keep:` stays and the rest is cut off too; without `keep:` the ball is on the side of the other one's normal. Between planes,
+    /// its normal is on the side of the first one's. Where a surface extends past the edge, the ball is on the side of the other one on
+    /// which the point `keep:` is (a place of its centre is always right), and the rest is cut off too; without `keep:` it is on the side
+    /// of the other one's normal. Between planes,
     /// and round an axis, it is a part of a cylinder or a torus, exactly; elsewhere a net within a quarter of the tolerance. An open
     /// edge ends on borders of both surfaces. A radius that does not fit is E673, which states the largest one.
     /// ```loft
@@ -30,7 +31,7 @@ builtins! {
         b: Surface,
         /// Radius of the ball, above 0.
         radius: Length,
-        /// A point on the side of the edge that stays, where a surface extends past it.
+        /// A point on the sides of both surfaces on which the ball is, where they extend past the edge.
         keep: Option<Point>,
     ) -> Vec<Surface> = |cx, a, b, radius, keep| {
         if radius.0 <= 0.0 {
