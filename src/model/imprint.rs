@@ -40,7 +40,7 @@ const COINCIDE: &str = "E657";
 const LOST: &str = "E413";
 
 /// The parts of a curve that run along none of some others.
-pub(super) fn beside(curve: &Chain, others: &[Chain], tolerance: &Tolerance) -> Result<Vec<Chain>> {
+fn beside(curve: &Chain, others: &[Chain], tolerance: &Tolerance) -> Result<Vec<Chain>> {
     /// What is left between runs counts where it is longer than so many tolerances.
     const SHORT: f64 = 16.0;
     let mut runs: Vec<(f64, f64)> = Vec::new();

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use glam::{DVec2, DVec3};
 
-use super::imprint::{TouchingPair, beside};
+use super::imprint::TouchingPair;
 use super::measure::area_within;
 use super::topology::{EdgeId, Model, SurfaceId};
 use crate::base::bbox::Box3;
@@ -100,9 +100,9 @@ impl Model {
         let mut out: Vec<Chain> = Vec::new();
         for chain in kept {
             let on = |others: &[Chain]| lies_on(&chain, others, tolerance);
+            // What runs along another one in part counts once where the surface is divided.
             if !on(&borders) && !on(&out) {
-                let known: Vec<Chain> = borders.iter().chain(&out).cloned().collect();
-                out.extend(beside(&chain, &known, tolerance)?);
+                out.push(chain);
             }
         }
         Ok(out)

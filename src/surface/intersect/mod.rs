@@ -9,6 +9,7 @@ pub mod fit_branch;
 pub mod join_curves;
 pub mod known_curves;
 pub mod line_crossing;
+mod lost_runs;
 pub mod march;
 pub mod pair;
 pub mod patch_pair;

@@ -21,6 +21,7 @@ use crate::surface::intersect::coplanar::{Coplanar, overlap};
 use crate::surface::intersect::extrusions::flat_and_extruded;
 use crate::surface::intersect::join_curves::{self, STRAIGHT};
 use crate::surface::intersect::known_curves::KnownCurve;
+use crate::surface::intersect::lost_runs::with_lost_runs;
 use crate::surface::intersect::pair::Pair;
 use crate::surface::intersect::patch_pair::{Stopped, common};
 use crate::surface::intersect::planes::flat_faces;
@@ -164,7 +165,7 @@ fn searched([a, b]: [&Surface; 2], [box_a, box_b]: [Box3; 2], origin: Origin, to
             curves.extend(own);
         }
     }
-    Ok((curves, touches))
+    Ok((with_lost_runs(curves, [&sheets_a, &sheets_b], origin, tolerance, &lost)?, touches))
 }
 
 fn sheets(ground: &Surface) -> Vec<Sheet> {
@@ -240,7 +241,7 @@ fn once(mut curves: Vec<Curve>, tolerance: &Tolerance) -> Vec<Curve> {
 }
 
 /// Whether a curve lies on another one, told at several places.
-fn lies_on(curve: &Curve, other: &Chain, tolerance: &Tolerance) -> bool {
+pub(super) fn lies_on(curve: &Curve, other: &Chain, tolerance: &Tolerance) -> bool {
     const PLACES: usize = 5;
     let chain = Chain::of_curve(curve);
     let near = |k: usize| other.closest(chain.point(k as f64 / (PLACES - 1) as f64)).2 <= 2.0 * tolerance.point;

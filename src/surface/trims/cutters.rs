@@ -38,6 +38,20 @@ pub(crate) struct DividingCurve {
     cuts: Vec<f64>,
 }
 
+impl DividingCurve {
+    /// Makes a closed cutter begin at the cut that is nearest to its own start, which parts nothing: a piece between the two may be shorter
+    /// than vertices are apart, or run along what it crosses.
+    fn begin_at_cut(&mut self, tolerance: &Tolerance) -> Result<()> {
+        let Some(chain) = self.chain.as_ref().filter(|chain| self.cutter.is_some() && chain.is_closed(tolerance)) else { return Ok(()) };
+        let off = |f: &f64| f.min(1.0 - *f);
+        if let Some(first) = self.cuts.iter().copied().min_by(|f, g| off(f).total_cmp(&off(g))).filter(|f| off(f) > 0.0) {
+            self.chain = Some(chain.slice(first, first, tolerance)?);
+            self.cuts.iter_mut().for_each(|f| *f = (*f - first).rem_euclid(1.0));
+        }
+        Ok(())
+    }
+}
+
 /// A part of a dividing curve between two meetings.
 #[derive(Clone, Debug)]
 pub(crate) struct Piece {
@@ -180,6 +194,7 @@ fn part(all: &mut [DividingCurve], meets: Meets, tolerance: &Tolerance) -> Resul
     }
     mirror_cuts(all, tolerance);
     for curve in all {
+        curve.begin_at_cut(tolerance)?;
         let Some(chain) = &curve.chain else { continue };
         let near = tolerance.point / chain.length();
         // A loop that is cut begins at a cut: its own start is no end.
