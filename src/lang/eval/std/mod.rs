@@ -37,6 +37,7 @@ pub mod point_nets;
 pub mod roundings;
 pub mod rows;
 pub mod scatters;
+pub mod slopes;
 pub mod splines;
 pub mod stability;
 pub mod surfaces;
@@ -123,6 +124,7 @@ pub const BUILTINS: &[&[Builtin]] = &[
     distances::BUILTINS,
     data::BUILTINS,
     curves::BUILTINS,
+    slopes::BUILTINS,
     splines::BUILTINS,
     fairs::BUILTINS,
     fills::BUILTINS,

@@ -15,7 +15,7 @@ use crate::surface::points::even_points::{MOST, even_points};
 use crate::{builtins, fields};
 
 /// Fraction of a curve at a fraction or length; both must lie on the curve.
-fn fraction_of(cx: &Cx, chain: &Chain, station: Station, argument: &'static str) -> Result<f64, Halt> {
+pub(crate) fn fraction_of(cx: &Cx, chain: &Chain, station: Station, argument: &'static str) -> Result<f64, Halt> {
     let (fraction, found) = match station {
         Station::Fraction(f) => (f, format!("{}%", shown(f * 100.0))),
         Station::Length(s) => (s / chain.length(), format!("{}{}", shown(s), cx.unit().name)),

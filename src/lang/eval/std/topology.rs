@@ -13,8 +13,7 @@ use crate::lang::eval::halt::Halt;
 use crate::lang::eval::scene::Scene;
 use crate::lang::eval::std::choosing;
 use crate::lang::eval::std::kinds::{Carrier, EdgeKey, EdgeOf, Edged, Faces, VertexOf};
-use crate::lang::eval::std::surfaces::checked_uv;
-use crate::lang::values::conversions::{Angle, Direction, Length};
+use crate::lang::values::conversions::{Angle, Length};
 use crate::lang::values::value::{EntityHome, Value};
 use crate::model::contact::Turn;
 use crate::model::{EdgeCurve, EdgeId, Model, PatchId, SharedEdge, SharedEdges, SurfaceId};
@@ -190,7 +189,7 @@ pub(crate) fn curve_of(cx: &mut Cx, edge: EdgeOf) -> Result<Chain, Halt> {
 }
 
 /// The line of constant u or v.
-fn iso_line(cx: &mut Cx, of: &Surface, at: IsoLine, argument: &'static str) -> Result<Chain, Halt> {
+pub(crate) fn iso_line(cx: &mut Cx, of: &Surface, at: IsoLine, argument: &'static str) -> Result<Chain, Halt> {
     let tolerance = cx.tolerance()?;
     if !(0.0..=1.0).contains(&at.value()) {
         let (found, range) = (at.value().to_string(), "between 0 and 1".to_owned());
@@ -360,23 +359,4 @@ builtins! {
         /// From 0 to 1.
         at: f64,
     ) -> Chain = |cx, of, at| iso_line(cx, &of, IsoLine::V(at), "at");
-
-    /// The unit normal of a surface at u and v.
-    ///
-    /// ```loft
-    /// curve south = line((0, 0, 0), (4m, 0, 0))
-    /// surface wall = extrude(south, by: (0, 0, 3m))
-    /// let n = wall.normal(0.5, 0.5)
-    /// ```
-    fn normal(
-        /// A surface.
-        of: Surface,
-        /// From 0 to 1.
-        u: f64,
-        /// From 0 to 1.
-        v: f64,
-    ) -> Direction = |_, of, u, v| {
-        let (u, v) = checked_uv(&of, (u, "u"), (v, "v"))?;
-        Ok(Direction(of.normal(u, v)))
-    };
 }

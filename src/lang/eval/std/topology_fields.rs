@@ -5,12 +5,12 @@ use std::sync::Arc;
 
 use crate::fields;
 use crate::lang::eval::std::kinds::{EdgeOf, Edged, Faces, PatchOf, VertexOf};
-use crate::lang::eval::std::topology::{curve_of, edges, loops, middle, patches, picked, skin, vertices, whole};
+use crate::lang::eval::std::topology::{curve_of, edges, iso_line, loops, middle, patches, picked, skin, vertices, whole};
 use crate::lang::values::conversions::{Length, Point};
 use crate::lang::values::value::{ShellValue, Value};
 use crate::model::EdgeId;
 use crate::network::Chain;
-use crate::surface::Surface;
+use crate::surface::{IsoLine, Surface};
 
 fields! {
     /// The patches of a surface: its smooth pieces.
@@ -24,6 +24,14 @@ fields! {
     fn vertices(of: Surface) -> Vec<VertexOf> = |cx, of| vertices(cx, &[of]);
     /// For each patch of a surface the edges around it, in order.
     fn loops(of: Surface) -> Vec<Vec<EdgeOf>> = |cx, of| loops(cx, &[of]);
+    /// The side of a surface at u 0, a curve: of a sweep its first section.
+    fn start(of: Surface) -> Chain = |cx, of| iso_line(cx, &of, IsoLine::U(0.0), "start");
+    /// The side at u 1: the last section.
+    fn end(of: Surface) -> Chain = |cx, of| iso_line(cx, &of, IsoLine::U(1.0), "end");
+    /// The side at v 0; along it u ascends.
+    fn left(of: Surface) -> Chain = |cx, of| iso_line(cx, &of, IsoLine::V(0.0), "left");
+    /// The side at v 1.
+    fn right(of: Surface) -> Chain = |cx, of| iso_line(cx, &of, IsoLine::V(1.0), "right");
     /// The faces of a shell: the patches of its surfaces.
     fn faces(of: Arc<ShellValue>) -> Vec<PatchOf> = |cx, of| {
         let (home, _, patches) = patches(cx, &of.surfaces)?;
@@ -78,6 +86,10 @@ fields! {
     fn faces(of: EdgeOf) -> Vec<PatchOf> = |_, of| Ok(of.1.faces.iter().map(|p| PatchOf(of.0.clone(), *p)).collect());
     /// The two ends of an edge.
     fn vertices(of: EdgeOf) -> Vec<VertexOf> = |_, of| Ok([of.1.ends.0, of.1.ends.1].map(|v| VertexOf(of.0.clone(), v)).to_vec());
+    /// First point of the curve of an edge.
+    fn start(of: EdgeOf) -> Point = |cx, of| Ok(Point(curve_of(cx, of)?.start()));
+    /// Last point of the curve of an edge.
+    fn end(of: EdgeOf) -> Point = |cx, of| Ok(Point(curve_of(cx, of)?.end()));
     /// The point halfway along an edge.
     fn mid(of: EdgeOf) -> Point = |cx, of| Ok(Point(middle(cx, &of)?));
     /// The curve that an edge lies on.
