@@ -100,7 +100,7 @@ impl Model {
         let mut out: Vec<Chain> = Vec::new();
         for chain in kept {
             let on = |others: &[Chain]| lies_on(&chain, others, tolerance);
-            // What runs along another one in part counts once where the surface is divided.
+            // Curves may share runs: dividing the surface counts each run once.
             if !on(&borders) && !on(&out) {
                 out.push(chain);
             }

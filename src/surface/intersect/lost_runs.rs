@@ -19,7 +19,7 @@ use crate::surface::intersect::pair::Pair;
 use crate::surface::intersect::sheet::Sheet;
 use crate::surface::intersect::with_surfaces::{curve, lies_on};
 
-/// Rounds in which curves are added at most; each has those that begin at one more border.
+/// The most borders in a row behind which runs are looked for.
 const ROUNDS: usize = 16;
 
 /// Adds the runs that go on from free ends of some curves.
@@ -63,7 +63,7 @@ fn from(at: DVec3, sheets: [&[Sheet]; 2], origin: Origin, tolerance: &Tolerance,
             let pair = Pair { a: &x.patch, b: &y.patch, point: tolerance.point };
             let size = x.bounds().diagonal().min(y.bounds().diagonal());
             let spot = pair.correct(*a, *b, None).filter(|spot| spot.p.distance(at) <= TOLD_APART * tolerance.point);
-            // What cannot be followed leaves the end free, as it was.
+            // Where no run can be followed the end stays free.
             let Some(Ok(branch)) = spot.map(|spot| pair.march(spot, size)) else { continue };
             let Ok(cubics) = pair.fitted(&branch, lost) else { continue };
             found.extend(curve(&cubics, origin, tolerance)?);

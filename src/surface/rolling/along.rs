@@ -1,7 +1,6 @@
-//! The balls along an edge: from one of them on in the direction in which its centre travels.
+//! The balls along an edge, found by a march along the way of their centres.
 //!
-//! Not past the places of the edge one after the other: where the edge bends more than its distance from the centre allows, the planes
-//! across it meet the centre's way in another order.
+//! Planes across the edge at places along it would not do: where it bends sharply, the way of the centres meets them in another order.
 
 use glam::DVec3;
 
@@ -16,7 +15,7 @@ const BEYOND: f64 = 0.25;
 const TURN: f64 = 0.75;
 const CHORD: f64 = 0.935;
 
-/// What follows a ball.
+/// The next step of the march.
 enum Next {
     Ball(BallStation),
     /// Nothing: it is the last one.
@@ -86,7 +85,9 @@ impl Ball {
         if is_last {
             return Next::End;
         }
-        if let Some(end) = self.at_ends(radius, &last, *step) {
+        if !self.closed
+            && let Some(end) = self.at_ends(radius, &last, *step)
+        {
             return Next::Ball(end);
         }
         loop {
@@ -106,10 +107,10 @@ impl Ball {
         }
     }
 
-    /// The ball in the plane across the edge at an end of it, where that is less than a step ahead.
+    /// The ball in the plane across an open edge at an end of it, where that is less than a step ahead.
     fn at_ends(&self, radius: f64, last: &BallStation, step: f64) -> Option<BallStation> {
         let guess = Guess { uv: last.uv, points: last.feet };
-        let ends = [&self.starts[0], &self.starts[STARTS]].into_iter().filter(|_| !self.closed).filter_map(|end| {
+        let ends = [&self.starts[0], &self.starts[STARTS]].into_iter().filter_map(|end| {
             let way = if end.along.dot(last.way) < 0.0 { -end.along } else { end.along };
             let ahead = (end.at - last.center).dot(way);
             let there = (ahead > self.tolerance.point && ahead <= step).then(|| self.station(radius, (end.at, way), &guess))??;

@@ -13,10 +13,9 @@ builtins! {
     /// A list of three: the first surface cut back, the rounding, the second one cut back. The rounding is the envelope of a ball that
     /// rolls along the edge and touches both; it joins both smoothly. u runs along the edge, v from the first surface to the second;
     /// its normal is on the side of the first one's. Where a surface extends past the edge, the ball is on the side of the other one on
-    /// which the point `keep:` is (a place of its centre is always right), and the rest is cut off too; without `keep:` it is on the side
-    /// of the other one's normal. Between planes,
-    /// and round an axis, it is a part of a cylinder or a torus, exactly; elsewhere a net within a quarter of the tolerance. An open
-    /// edge ends on borders of both surfaces. A radius that does not fit is E673, which states the largest one.
+    /// which the point `keep:` is, and the rest is cut off too; a centre of the ball is always right. Without `keep:` it is on the side of
+    /// the other one's normal. Between planes, and round an axis, the rounding is a part of a cylinder or a torus, exactly; elsewhere a net
+    /// within a quarter of the tolerance. An open edge ends on borders of both surfaces. A radius that does not fit is E673, which states the largest one.
     /// ```loft
     /// surface floor = plane(polyline([(0, 0, 0), (2m, 0, 0), (2m, 1m, 0), (0, 1m, 0)], closed: true))
     /// surface wall = extrude(line((0, 0, 0), (2m, 0, 0)), by: (0, 0, 1m))

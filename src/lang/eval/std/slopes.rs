@@ -23,14 +23,19 @@ const PER_LENGTH: Dim = Dim { length: -1, angle: 0, mass: 0 };
 
 /// A place on a surface: a point, which stands for its foot, or u.
 #[derive(Clone, Copy, Debug)]
-pub struct SurfacePlace(Result<DVec3, f64>);
+pub enum SurfacePlace {
+    /// A point, on the surface or beside it.
+    Point(DVec3),
+    /// u.
+    U(f64),
+}
 
 impl FromValue for SurfacePlace {
     const TY: Ty = Ty::OneOf(&[Ty::Point, Ty::Quantity(Dim::NONE)]);
     fn from_value(value: Value) -> Option<Self> {
         match value {
-            Value::Vector(p, _) | Value::Node(p) => Some(Self(Ok(p))),
-            Value::Number(q) => Some(Self(Err(q.value))),
+            Value::Vector(p, _) | Value::Node(p) => Some(Self::Point(p)),
+            Value::Number(q) => Some(Self::U(q.value)),
             _ => None,
         }
     }
@@ -38,9 +43,9 @@ impl FromValue for SurfacePlace {
 
 /// u and v of a place that is given by a point or by both numbers.
 fn place_of(surface: &Surface, place: SurfacePlace, v: Option<f64>, function: &'static str) -> Result<(f64, f64), Halt> {
-    match (place.0, v) {
-        (Ok(p), None) => Ok(Nearest::new(surface).at(p).uv),
-        (Err(u), Some(v)) => checked_uv(surface, (u, "u"), (v, "v")),
+    match (place, v) {
+        (SurfacePlace::Point(p), None) => Ok(Nearest::new(surface).at(p).uv),
+        (SurfacePlace::U(u), Some(v)) => checked_uv(surface, (u, "u"), (v, "v")),
         _ => Err(ValueFault::Missing { function, what: "a point, or u and v", example: "roof.normal(0.5, 0.5)" }.into()),
     }
 }
