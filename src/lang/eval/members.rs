@@ -9,6 +9,7 @@ use crate::lang::eval::room::flat_len;
 use crate::lang::eval::std;
 use crate::lang::eval::std::Builtin;
 use crate::lang::values::plans::ReportTable;
+use crate::lang::values::types::Ty;
 use crate::lang::values::units;
 use crate::lang::values::value::{Dim, Value};
 use crate::mesh::Group;
@@ -80,7 +81,9 @@ impl Cx<'_> {
     fn members_of(&mut self, of: &Value) -> Result<Vec<NamedValue>, Halt> {
         let mut members = what(of);
         let (mut any, mut first) = (!members.is_empty(), None);
-        for field in std::fields().filter(|f| f.params.first().is_some_and(|p| accepts(p.ty, of))) {
+        // The sides of a surface are no figures.
+        let told = |f: &&Builtin| !(matches!(of, Value::Surface(_)) && f.returns == Ty::Curve);
+        for field in std::fields().filter(|f| f.params.first().is_some_and(|p| accepts(p.ty, of))).filter(told) {
             match self.member_value(field, of) {
                 Ok(value) => {
                     any = true;
