@@ -81,13 +81,14 @@ impl Normals {
         if seen.len() < triangulation.xy.len() {
             seen.resize(triangulation.xy.len(), (DVec2::INFINITY, DVec3::ZERO));
         }
-        nodes.map(|n| {
+        let own = nodes.map(|n| {
             let (xy, known) = (triangulation.xy[n as usize], &mut seen[n as usize]);
             if known.0 != xy {
                 *known = (xy, normal_at(chart, xy));
             }
             known.1
-        })
+        });
+        on_own_side(chart, nodes.map(|n| triangulation.xy[n as usize]), own)
     }
 }
 
@@ -165,7 +166,25 @@ fn normal_at(chart: &Chart, xy: DVec2) -> DVec3 {
 /// The least cosine of the angles between a triangle and its surface at the corners. Three places on one bent line are a
 /// triangle perpendicular to the surface: the surface is near it along its own normal, while its sides are far from the surface.
 fn tilt(chart: &Chart, triangle: ChartTriangle) -> f64 {
-    tilt_of(triangle.xy.map(|xy| normal_at(chart, xy)), triangle.p)
+    tilt_of(on_own_side(chart, triangle.xy, triangle.xy.map(|xy| normal_at(chart, xy))), triangle.p)
+}
+
+/// Normals at the corners of a triangle, those on a crease replaced by the ones on the side of it where the triangle is: beside a sharp one
+/// the other side's tells that it lies upside down.
+fn on_own_side(chart: &Chart, xy: [DVec2; 3], mut own: [DVec3; 3]) -> [DVec3; 3] {
+    let surface = chart.surface();
+    let (us, vs) = surface.kinks();
+    if us.is_empty() && vs.is_empty() && surface.closed() == (false, false) {
+        return own;
+    }
+    let places = xy.map(|xy| DVec2::from(chart.uv(xy)));
+    let middle = (places[0] + places[1] + places[2]) / 3.0;
+    for (normal, place) in own.iter_mut().zip(places) {
+        if let Some(beside) = surface.normal_on_crease(place, middle) {
+            *normal = beside;
+        }
+    }
+    own
 }
 
 /// The same by the normals of the surface at the corners.
