@@ -306,63 +306,63 @@ fn foot(jet: impl Fn(f64) -> BorderJet, p: DVec3, near: f64, range: (f64, f64)) 
     down(&jet, p, near, range)
 }
 
+/// What is found at one place of a segment; not a number where a face has none.
+#[derive(Clone, Copy)]
+struct AtPlace {
+    point: DVec3,
+    gap: f64,
+    angle: f64,
+    curvature: f64,
+}
+
+/// Gap, angle and jump of curvature at a share of the segment that two borders share.
+fn at_place(a: &SegmentSide, b: &SegmentSide, f: f64) -> AtPlace {
+    let (uv, point, along) = a.jet(a.station(f));
+    let (other, q, _) = b.jet(b.foot(point, b.station(f)));
+    let (m, n) = (a.normal(uv), b.normal(other));
+    let gap = point.distance(q);
+    if m == DVec3::ZERO || n == DVec3::ZERO {
+        return AtPlace { point, gap, angle: f64::NAN, curvature: f64::NAN };
+    }
+    let turn = angle_between(m, n);
+    let angle = turn.min(std::f64::consts::PI - turn);
+    let n = if m.dot(n) < 0.0 { -n } else { n };
+    let curvature = (a.curvature_across(uv, along, m) - b.curvature_across(other, along, n)).abs();
+    AtPlace { point, gap, angle, curvature }
+}
+
 /// Gap, angle and jump of curvature along the segment that two borders share.
 fn contact(a: &SegmentSide, b: &SegmentSide, joins: &Joins, segment: usize) -> Contact {
     let steps = STEPS.max(STEPS_A_SPAN * a.spans().max(b.spans()));
-    let at = |f: f64| {
-        let (uv, p, _) = a.jet(a.station(f));
-        let (other, q, _) = b.jet(b.foot(p, b.station(f)));
-        (p, q, a.normal(uv), b.normal(other))
-    };
-    let gap = |f: f64| {
-        let (p, q, ..) = at(f);
-        p.distance(q)
-    };
-    let angle = |f: f64| {
-        let (_, _, m, n) = at(f);
-        if m == DVec3::ZERO || n == DVec3::ZERO {
-            return f64::NAN;
-        }
-        let turn = angle_between(m, n);
-        turn.min(std::f64::consts::PI - turn)
-    };
-    let curvature = |f: f64| {
-        let (uv, p, along) = a.jet(a.station(f));
-        let (other, ..) = b.jet(b.foot(p, b.station(f)));
-        let (m, n) = (a.normal(uv), b.normal(other));
-        if m == DVec3::ZERO || n == DVec3::ZERO {
-            return f64::NAN;
-        }
-        let n = if m.dot(n) < 0.0 { -n } else { n };
-        (a.curvature_across(uv, along, m) - b.curvature_across(other, along, n)).abs()
-    };
-    let point = |f: f64| at(f).0;
+    let at = |f: f64| at_place(a, b, f);
+    let seen: Vec<AtPlace> = (0..=steps).map(|k| at(k as f64 / steps as f64)).collect();
+    let middle = seen[steps / 2].point;
     Contact {
         faces: (a.face, b.face),
         edges: (a.edge, b.edge),
         length: joins.pieces.segments[segment].length(),
         middle: joins.middle(segment),
-        gap: spread(steps, gap, point).unwrap_or(Spread { min: 0.0, max: 0.0, mean: 0.0, at: point(0.5) }),
-        angle: spread(steps, angle, point),
-        curvature: spread(steps, curvature, point),
+        gap: spread(&seen, at, |place| place.gap).unwrap_or(Spread { min: 0.0, max: 0.0, mean: 0.0, at: middle }),
+        angle: spread(&seen, at, |place| place.angle),
+        curvature: spread(&seen, at, |place| place.curvature),
     }
 }
 
-/// Least, largest and mean of a function over 0…1; places where it is not a number are left out.
-fn spread(steps: usize, value: impl Fn(f64) -> f64, point: impl Fn(f64) -> DVec3) -> Option<Spread> {
+/// Least, largest and mean of a value over a segment that was looked at in equal steps; places where it is not a number are left out.
+fn spread(seen: &[AtPlace], at: impl Fn(f64) -> AtPlace, value: impl Fn(&AtPlace) -> f64) -> Option<Spread> {
+    let steps = seen.len() - 1;
     let place = |k: usize| k as f64 / steps as f64;
-    let values: Vec<f64> = (0..=steps).map(|k| value(place(k))).collect();
-    let known = || values.iter().enumerate().filter(|(_, x)| !x.is_nan());
-    let least = known().min_by(|a, b| a.1.total_cmp(b.1))?.0;
-    let most = known().max_by(|a, b| a.1.total_cmp(b.1).then(b.0.cmp(&a.0)))?.0;
+    let known = || seen.iter().map(&value).enumerate().filter(|(_, x)| !x.is_nan());
+    let least = known().min_by(|a, b| a.1.total_cmp(&b.1))?.0;
+    let most = known().max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)))?.0;
     let refined = |k: usize, sign: f64| {
         let around = (place(k.saturating_sub(1)), place((k + 1).min(steps)));
-        let f = lowest(around.0, around.1, NEAREST, |f| sign * value(f));
-        if sign * value(f) < sign * values[k] { f } else { place(k) }
+        let found = at(lowest(around.0, around.1, NEAREST, |f| sign * value(&at(f))));
+        if sign * value(&found) < sign * value(&seen[k]) { found } else { seen[k] }
     };
     let (low, high) = (refined(least, 1.0), refined(most, -1.0));
     // Trapezoids: the ends count half.
     let weight = |k: usize| if k == 0 || k == steps { 0.5 } else { 1.0 };
     let (sum, whole) = known().fold((0.0, 0.0), |(sum, whole), (k, x)| (sum + weight(k) * x, whole + weight(k)));
-    Some(Spread { min: value(low), max: value(high), mean: sum / whole, at: point(high) })
+    Some(Spread { min: value(&low), max: value(&high), mean: sum / whole, at: high.point })
 }
