@@ -15,8 +15,8 @@ use crate::surface::rails::ring::{PLACES, Ring};
 /// Starts tried along a closed section before the best one is made better.
 const STARTS: usize = 64;
 /// A start as it is drawn is kept where it lies within this share of the length of the best one, and its mean squared distance is at most
-/// so many times the least.
-const AS_DRAWN: (f64, f64) = (1.0 / 32.0, 2.0);
+/// so many times the least: sections of one shape, which have a start without any twist, never keep another one.
+const AS_DRAWN: (f64, f64) = (1.0 / 32.0, 64.0);
 /// Intervals over which squared distances are integrated, beside those between corners.
 const PANELS: usize = 16;
 /// Points of the rule for each of them.
@@ -53,11 +53,11 @@ impl Read {
         }
     }
 
-    /// Where its corners are, by shares of its length as it is read; nothing of a point.
-    fn corners(&self, tolerance: &Tolerance) -> Option<Vec<f64>> {
+    /// Places of its curve by shares of its length as it is read, ends left out; nothing of a point.
+    fn stops(&self, of: &impl Fn(&Chain) -> Vec<f64>) -> Option<Vec<f64>> {
         let Self::Curve(chain, map) = self else { return None };
         let inside = |f: &f64| *f > WHOLE_NUMBER && *f < 1.0 - WHOLE_NUMBER;
-        let mut own: Vec<f64> = chain.kinks(tolerance).into_iter().filter(inside).map(|f| if map.falls() { 1.0 - f } else { f }).collect();
+        let mut own: Vec<f64> = of(chain).into_iter().filter(inside).map(|f| if map.falls() { 1.0 - f } else { f }).collect();
         own.sort_by(f64::total_cmp);
         Some(own)
     }
@@ -65,7 +65,12 @@ impl Read {
 
 /// Joins corners to corners where all curves have equally many: at the means of their shares. Between them curves run by their lengths.
 pub fn join_corners(all: &mut [Read], tolerance: &Tolerance) {
-    let corners: Vec<Option<Vec<f64>>> = all.iter().map(|read| read.corners(tolerance)).collect();
+    join_at(all, &|chain| chain.kinks(tolerance), tolerance);
+}
+
+/// The same with other places than corners.
+pub fn join_at(all: &mut [Read], of: &impl Fn(&Chain) -> Vec<f64>, tolerance: &Tolerance) {
+    let corners: Vec<Option<Vec<f64>>> = all.iter().map(|read| read.stops(of)).collect();
     let mut curves = corners.iter().flatten();
     let Some(count) = curves.next().map(Vec::len).filter(|count| *count > 0) else { return };
     if curves.any(|own| own.len() != count) {
@@ -152,8 +157,9 @@ struct SectionPair<'a> {
     section: &'a Chain,
     /// Whether the second is read backwards.
     turned: bool,
-    /// The rotation that brings the plane of the first into that of the second, and both centres.
+    /// The rotation that brings the plane of the first into that of the second, how many times as large that one is, and both centres.
     turn: DQuat,
+    scale: f64,
     centers: (DVec3, DVec3),
 }
 
@@ -161,12 +167,12 @@ impl<'a> SectionPair<'a> {
     /// `a` and `b` are the rings of both, the second one as it is drawn.
     fn new(before: (&'a Chain, bool), section: &'a Chain, turned: bool, a: Ring, b: Ring) -> Self {
         let b = if turned { b.turned() } else { b };
-        Self { before, section, turned, turn: a.rotation_to(&b), centers: (a.center, b.center) }
+        Self { before, section, turned, turn: a.rotation_to(&b), scale: b.size / a.size, centers: (a.center, b.center) }
     }
 
     /// Where the first wants the second to be at a share of its length.
     fn wanted(&self, x: f64) -> DVec3 {
-        self.centers.1 + self.turn * (read(self.before.0, 0.0, self.before.1, x) - self.centers.0)
+        self.centers.1 + self.turn * (read(self.before.0, 0.0, self.before.1, x) - self.centers.0) * self.scale
     }
 
     /// Mean of squared distances of the second, read from a start, from places where it is wanted.
@@ -215,7 +221,7 @@ fn starts_between([before, own]: &[Vec<f64>; 2], (back, turned): (bool, bool)) -
 }
 
 /// A closed section in the direction in which a tube passes both, from the start at which it twists least against the one before, once
-/// both lie in one plane about one centre.
+/// both lie in one plane about one centre and are of one size.
 ///
 /// Corners go to corners: where both have equally many, only starts that lie between them as the one before does are tried.
 fn nearest_start(before: (&Chain, bool), section: &Chain, tolerance: &Tolerance) -> Result<Read> {
@@ -238,7 +244,7 @@ fn nearest_start(before: (&Chain, bool), section: &Chain, tolerance: &Tolerance)
         }
     }
     let Some((_, mut start, pair, wanted)) = best else { return Ok(Read::whole(section.clone(), false)) };
-    if !kinked && start != 0.0 {
+    if !kinked {
         let (step, rule) = (1.0 / STARTS as f64, gauss_legendre(ORDER));
         let slope = |start: f64| pair.slope(start, &corners, &rule);
         let (low, high) = (start - 2.0 * step, start + 2.0 * step);

@@ -15,6 +15,8 @@ const BESIDE: f64 = 0.01;
 pub struct Ring {
     /// The mean of its points.
     pub center: DVec3,
+    /// The root of the mean of their squared distances from it, model units.
+    pub size: f64,
     /// The unit normal of the area inside, right-handed; 0 where it encloses none.
     normal: DVec3,
 }
@@ -28,7 +30,8 @@ impl Ring {
         let twice: DVec3 = (0..PLACES).map(|k| arms[k].cross(arms[(k + 1) % PLACES])).sum();
         let reach = arms.iter().map(|arm| arm.length_squared()).fold(0.0, f64::max);
         let normal = if twice.length() > PARALLEL * reach { twice.normalize_or_zero() } else { DVec3::ZERO };
-        Self { center, normal }
+        let size = (arms.iter().map(|arm| arm.length_squared()).sum::<f64>() / PLACES as f64).sqrt();
+        Self { center, size, normal }
     }
 
     /// The same run backwards.
