@@ -6,9 +6,10 @@ use crate::base::tolerance::Tolerance;
 use crate::geometry::construct::build::line;
 use crate::network::Chain;
 use crate::surface::blended::coons::{borders, set_kinks};
-use crate::surface::blended::skin_align::{Read, SkinSection, aligned, join_corners};
+use crate::surface::blended::skin_align::{Read, SkinSection, aligned, join_at, join_corners};
 use crate::surface::core::shape::Shape;
 use crate::surface::core::surface::{Parts, Surface};
+use crate::surface::data::breaks::chain_breaks;
 use crate::surface::data::flow_words::phrase;
 use crate::surface::data::kind::{Domain, SurfaceKind};
 use crate::surface::rails::ring::Ring;
@@ -36,6 +37,13 @@ pub fn ruled(a: &Chain, b: &Chain, origin: Origin, tolerance: &Tolerance) -> Res
 /// The same by arc-length fractions from where curves start, however the lines twist.
 pub fn ruled_as_drawn(a: &Chain, b: &Chain, origin: Origin, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
     between((a, b), &as_drawn(a, b, tolerance), origin, tolerance)
+}
+
+/// The same piece by piece, where both curves are made of equally many: as the copies of a curve at two distances from it.
+pub fn ruled_by_pieces(a: &Chain, b: &Chain, origin: Origin, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
+    let mut read = as_drawn(a, b, tolerance);
+    join_at(&mut read, &chain_breaks, tolerance);
+    between((a, b), &read, origin, tolerance)
 }
 
 /// Both from their starts, or the second backwards.

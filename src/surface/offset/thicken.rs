@@ -8,7 +8,7 @@ use crate::base::tolerance::Tolerance;
 use crate::geometry::construct::build::line;
 use crate::network::Chain;
 use crate::surface::blended::plane_face;
-use crate::surface::blended::ruled::ruled_as_drawn;
+use crate::surface::blended::ruled::ruled_by_pieces;
 use crate::surface::closest::nearest::closest;
 use crate::surface::core::plane;
 use crate::surface::core::surface::Surface;
@@ -116,7 +116,7 @@ fn strip(low: &Chain, high: &Chain, origin: Origin, tolerance: &Tolerance, notes
     if bent && let Some(flat) = flat_rim(low, high, origin, tolerance)? {
         return Ok(flat);
     }
-    let (rim, more) = ruled_as_drawn(low, high, origin, tolerance)?;
+    let (rim, more) = ruled_by_pieces(low, high, origin, tolerance)?;
     notes.extend(more);
     Ok(rim)
 }
