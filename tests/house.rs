@@ -105,7 +105,7 @@ const CEILINGS: &[(&str, usize)] = &[
     ("base", 5_000),
     ("geometry", 6_700),
     ("network", 5_150),
-    ("surface", 36_450),
+    ("surface", 36_500),
     ("model", 7_400),
     ("mesh", 35_100),
     ("hydrostatics", 2_300),

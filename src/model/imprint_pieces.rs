@@ -15,9 +15,8 @@ use crate::base::par;
 use crate::base::tolerance::{MEASURE_ACCURACY, Tolerance};
 use crate::geometry::data::fault::CurveFault;
 use crate::network::{Chain, Network};
-use crate::surface::faults::CutFault;
 use crate::surface::intersect::with_curve::with_curve;
-use crate::surface::{Domain, Nearest, Surface, over_frame, split, with_loops};
+use crate::surface::{Domain, Nearest, Surface, over_frame, parted, with_loops};
 
 /// Places along a curve at which it is compared with another one.
 const SAMPLES: usize = 9;
@@ -41,7 +40,11 @@ impl Model {
         let pieces = par::try_map(listed.len(), |k| {
             job.go_on()?;
             let cutters = self.cutters(listed[k], &met, network, tolerance)?;
-            parts(&self.surfaces[listed[k].index()].surface, cutters, tolerance)
+            let surface = &self.surfaces[listed[k].index()].surface;
+            match parted(surface, &cutters, surface.origin(), tolerance)? {
+                Some(parts) => whole(surface, parts, tolerance),
+                None => Ok(vec![surface.clone()]),
+            }
         })?;
         let surface = |k: usize| &self.surfaces[listed[k].index()].surface;
         let hulls: Vec<Box3> = (0..listed.len()).map(|k| surface(k).hull()).collect();
@@ -82,15 +85,18 @@ impl Model {
             edges.extend(self.sides_of(if m.pair.0 == of { m.pair.1 } else { m.pair.0 }));
             found.extend(m.curves.iter().cloned());
         }
+        // A curve along a seam or a crease cuts: there the surface goes on.
+        let ends_at =
+            |edge: &EdgeId| self.edges[edge.index()].users.iter().filter(|(p, _)| self.patches[p.index()].surface == of).count() == 1;
         let mut borders = Vec::new();
-        for edge in self.sides_of(of) {
+        for edge in self.sides_of(of).into_iter().filter(ends_at) {
             borders.extend(self.edge_chain(edge, network, tolerance)?);
         }
         let mut kept: Vec<Chain> = Vec::new();
         for edge in edges {
             let Some(way) = self.edge_chain(edge, network, tolerance)? else { continue };
             for run in with_curve(&way, std::slice::from_ref(surface), tolerance)? {
-                let Some(to) = run.overlap_end else { continue };
+                let Some(to) = run.overlap_end.filter(|to| (to - run.f) * way.length() > tolerance.point) else { continue };
                 let whole = run.f <= 0.0 && to >= 1.0;
                 kept.push(if whole { way.clone() } else { way.slice(run.f, to, tolerance)? });
             }
@@ -113,25 +119,6 @@ impl Model {
 fn lies_on(chain: &Chain, others: &[Chain], tolerance: &Tolerance) -> bool {
     let point = |k: usize| chain.point((k as f64 + 0.5) / SAMPLES as f64);
     !others.is_empty() && (0..SAMPLES).all(|k| others.iter().any(|o| o.closest(point(k)).2 <= tolerance.point))
-}
-
-/// A surface divided by curves; those that hang loose cut nothing and are left out.
-fn parts(surface: &Surface, mut cutters: Vec<Chain>, tolerance: &Tolerance) -> Result<Vec<Surface>> {
-    while !cutters.is_empty() {
-        match split(surface, &cutters, surface.origin(), tolerance) {
-            Ok(found) => return whole(surface, found, tolerance),
-            Err(fault) => {
-                let Some(CutFault::CutOpen { ends, .. }) = fault.of() else { return Err(fault) };
-                let loose = |c: &Chain| [c.start(), c.end()].into_iter().any(|p| ends.iter().any(|end| tolerance.same_point(p, *end)));
-                let before = cutters.len();
-                cutters.retain(|c| !loose(c));
-                if cutters.len() == before {
-                    return Err(fault);
-                }
-            }
-        }
-    }
-    Ok(vec![surface.clone()])
 }
 
 /// The parts of a surface, if their areas add up to its own as far as their borders are known; E413 otherwise.

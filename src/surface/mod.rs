@@ -67,7 +67,7 @@ pub use crate::surface::rolling::ball_blend::rolling;
 pub use crate::surface::shapes::nurbs::NurbsSurface;
 pub use crate::surface::swept::extrude::extrude;
 pub use crate::surface::swept::revolve::{axis_of, revolve};
-pub use crate::surface::trims::divide::{divide, split};
+pub use crate::surface::trims::divide::{divide, parted, split};
 pub use crate::surface::trims::outlined::{Doubt, Ground, Outlined, outlined};
 pub use crate::surface::trims::project::{Way, project};
 pub use crate::surface::trims::trim::{over_frame, trim, with_loops};

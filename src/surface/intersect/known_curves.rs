@@ -1,4 +1,4 @@
-//! Borders of one face that lie on another one. Where the faces cross along such a border it is part of their intersection. The search
+//! Runs of borders of one face that lie on another one. Where the faces cross along such a run it is part of their intersection. The search
 //! leaves out the cells along it: the faces may miss each other there by less than the tolerance.
 
 use glam::{DVec2, DVec3};
@@ -17,8 +17,10 @@ use crate::surface::intersect::with_curve::with_curve;
 use crate::surface::rails::side::{Side, between};
 use crate::surface::trims::trim_loop::shifts;
 
-/// Places at which a border is compared with the other face, before it is followed.
+/// Places at which a run of a border is compared with the other face.
 const PROBES: [f64; 5] = [0.03, 0.27, 0.4873, 0.74, 0.97];
+/// A border is followed where one of so many steps begins or ends on the other face.
+const LOOKS: usize = 32;
 /// Faces cross along a border where they do so at this angle at least, radians. Below it they go on into each other.
 const CROSSING: f64 = 1.0 / 256.0;
 /// Steps of a border between two breaks.
@@ -39,7 +41,7 @@ pub(crate) struct KnownCurve {
 }
 
 impl KnownCurve {
-    /// Whole borders of either face that lie on the other one, where the faces cross along them.
+    /// Runs of borders of either face that lie on the other one, where the faces cross along them.
     ///
     /// Fails as [`with_curve`] does.
     pub fn between(a: &Surface, b: &Surface, tolerance: &Tolerance) -> Result<Vec<Self>> {
@@ -64,11 +66,16 @@ impl KnownCurve {
                     angle.min(std::f64::consts::PI - angle) >= CROSSING
                 }
             };
-            for chain in chains {
-                let is_new = || found.iter().all(|known| !known.runs_along(&chain, tolerance));
-                if PROBES.iter().all(|f| crosses(chain.point(*f))) && is_new() && lies_on(&chain, &grounds[other], tolerance)? {
-                    let places = places(&chain, |p| [0, 1].map(|n| DVec2::from(nearest[n].at(p).uv)));
-                    found.push(Self { chain, places, turns: [shifts(a), shifts(b)] });
+            for border in chains {
+                if !(0..=LOOKS).any(|k| crosses(border.point(k as f64 / LOOKS as f64))) {
+                    continue;
+                }
+                for chain in runs_on(&border, &grounds[other], tolerance)? {
+                    let is_new = || found.iter().all(|known| !known.runs_along(&chain, tolerance));
+                    if PROBES.iter().all(|f| crosses(chain.point(*f))) && is_new() {
+                        let places = places(&chain, |p| [0, 1].map(|n| DVec2::from(nearest[n].at(p).uv)));
+                        found.push(Self { chain, places, turns: [shifts(a), shifts(b)] });
+                    }
                 }
             }
         }
@@ -115,11 +122,13 @@ fn near_borders(face: &Surface, other: &Surface, tolerance: &Tolerance) -> Resul
     Ok(found)
 }
 
-/// Whether all of a curve lies on a surface.
-fn lies_on(chain: &Chain, surface: &Surface, tolerance: &Tolerance) -> Result<bool> {
+/// The runs of a curve that lie on a surface and are no points.
+fn runs_on(chain: &Chain, surface: &Surface, tolerance: &Tolerance) -> Result<Vec<Chain>> {
     let near = tolerance.point / chain.length();
-    let runs = with_curve(chain, std::slice::from_ref(surface), tolerance)?;
-    Ok(runs.iter().any(|run| run.f <= near && run.overlap_end.is_some_and(|to| to >= 1.0 - near)))
+    let met = with_curve(chain, std::slice::from_ref(surface), tolerance)?;
+    let runs = met.into_iter().filter_map(|run| Some((run.f, run.overlap_end?))).filter(|(from, to)| to - from > 2.0 * near);
+    let whole = |from: f64, to: f64| from <= near && to >= 1.0 - near;
+    runs.map(|(from, to)| if whole(from, to) { Ok(chain.clone()) } else { chain.slice(from, to, tolerance) }).collect()
 }
 
 /// Places of a curve in the (u, v) of both surfaces, in order: [`STEPS`] to each span between breaks, fewer where there are many.

@@ -114,11 +114,31 @@ const KEEP_SHARE: f64 = 1.0 / 1000.0;
 /// All parts into which curves on a surface divide it, together with its own border; fails as [`divide`] does.
 pub fn split(whole: &Surface, cutters: &[Chain], origin: Origin, tolerance: &Tolerance) -> Result<Vec<Surface>> {
     let base = &plane::unmapped(whole, tolerance)?;
-    let dividing = dividing(base, cutters, Meets::Anywhere, tolerance)?;
+    parts(whole, base, &dividing(base, cutters, Meets::Anywhere, tolerance)?, origin, tolerance)
+}
+
+/// The same of curves of which some may cut nothing off: they are left out. `None` where all do.
+pub fn parted(whole: &Surface, cutters: &[Chain], origin: Origin, tolerance: &Tolerance) -> Result<Option<Vec<Surface>>> {
+    if cutters.is_empty() {
+        return Ok(None);
+    }
+    let base = &plane::unmapped(whole, tolerance)?;
+    let (dividing, _) = arranged(base, cutters, Meets::Anywhere, tolerance)?;
+    if !dividing.is_cut {
+        return Ok(None);
+    }
+    let found = parts(whole, base, &dividing, origin, tolerance)?;
+    // A curve along a seam alone only says where an edge is already.
+    let seam_alone = found.len() == 1 && dividing.pieces.iter().all(|piece| piece.rim);
+    Ok((!seam_alone).then_some(found))
+}
+
+/// The parts of a surface, of which `base` is without a map, between what divides it.
+fn parts(whole: &Surface, base: &Surface, dividing: &Dividing, origin: Origin, tolerance: &Tolerance) -> Result<Vec<Surface>> {
     let cells = Cells::new(base, &dividing.pieces, &dividing.edges, tolerance)?;
     let part = |face: &FaceLoops| Ok(assembled(base, trim_loops(&dividing.pieces, face), origin)?.cut_from(std::slice::from_ref(whole)));
     let faces = cells.faces()?;
-    undivided(base, &dividing, faces.len(), tolerance)?;
+    undivided(base, dividing, faces.len(), tolerance)?;
     faces.iter().map(part).collect()
 }
 
@@ -147,10 +167,18 @@ fn undivided(base: &Surface, dividing: &Dividing, parts: usize, tolerance: &Tole
 pub(crate) struct Dividing {
     pub pieces: Vec<Piece>,
     pub edges: Vec<Edge>,
+    /// Whether a curve runs inside, or along a seam, and makes it a border.
+    is_cut: bool,
 }
 
-/// The pieces of the border and of curves that divide a surface, loose ends left out.
+/// The pieces of the border and of curves that divide a surface, loose ends left out; E659 where one of the curves cuts nothing off.
 pub(crate) fn dividing(base: &Surface, cutters: &[Chain], meets: Meets, tolerance: &Tolerance) -> Result<Dividing> {
+    let (dividing, idle) = arranged(base, cutters, meets, tolerance)?;
+    idle.map_or(Ok(dividing), |fault| Err(fault.into()))
+}
+
+/// The same, with the first of the curves that cut nothing off.
+fn arranged(base: &Surface, cutters: &[Chain], meets: Meets, tolerance: &Tolerance) -> Result<(Dividing, Option<CutFault>)> {
     let curves = dividing_curves(base, cutters, meets, tolerance)?;
     let (all, along) = pieces(base, &curves, tolerance)?;
     let (edges, places) = graph(base, &all, tolerance);
@@ -163,6 +191,7 @@ pub(crate) fn dividing(base: &Surface, cutters: &[Chain], meets: Meets, toleranc
     if is_plane(&graph, &rows) {
         bridges(&rows).into_iter().map(|k| kept[k]).filter(|k| !all[*k].rim).for_each(|k| stays[k] = false);
     }
+    let mut idle = None;
     for (k, cutter) in cutters.iter().enumerate() {
         let parts = || (0..all.len()).filter(|i| curves[all[*i].curve].cutter == Some(k));
         let outside = parts().next().is_none();
@@ -174,10 +203,13 @@ pub(crate) fn dividing(base: &Surface, cutters: &[Chain], meets: Meets, toleranc
             let loops = natural(base, tolerance)?;
             ends.retain(|p| within(base, &loops, *p).is_some());
         }
-        return Err(CutFault::CutOpen { cutter: cutter.origin(), surface: base.origin(), ends, outside }.into());
+        idle = Some(CutFault::CutOpen { cutter: cutter.origin(), surface: base.origin(), ends, outside });
+        break;
     }
     let kept = || (0..all.len()).filter(|i| stays[*i]);
-    Ok(Dividing { pieces: kept().map(|i| all[i].clone()).collect(), edges: kept().map(|i| edges[i].clone()).collect() })
+    let is_cut = kept().any(|i| !all[i].rim || curves[all[i].curve].seam && !all[i].seam);
+    let (pieces, edges) = kept().map(|i| (all[i].clone(), edges[i].clone())).unzip();
+    Ok((Dividing { pieces, edges, is_cut }, idle))
 }
 
 /// The foot of the point to keep.
