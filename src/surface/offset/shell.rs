@@ -336,16 +336,17 @@ impl Making<'_> {
             let length = side.chain.length();
             points.extend(STEPS.into_iter().map(|share| side.at + side.way * (share * length)));
         }
-        let room = |p: &DVec3| -> Option<f64> {
-            let feet = sides.iter().map(|side| (side, side.chain.closest(*p)));
-            let (side, (f, q, off)) = feet.min_by(|x, y| x.1.2.total_cmp(&y.1.2))?;
-            // The nearest edge decides the side; a seam has the face on both.
-            let seam = sides.iter().filter(|other| other.joint == side.joint).count() > 1;
-            (seam || side.inside(f, *p - q)).then_some(off)
-        };
         let ground = Nearest::new(&self.longer[face]);
-        let on_face = points.into_iter().map(|p| ground.at(p).point);
-        on_face.filter_map(|p| Some((room(&p)?, p))).max_by(|x, y| x.0.total_cmp(&y.0)).map(|best| best.1)
+        let beside = |p: DVec3| {
+            let feet = sides.iter().map(|side| (side, side.chain.closest(p)));
+            feet.min_by(|x, y| x.1.2.total_cmp(&y.1.2)).map(|(side, (f, q, off))| (off, p, side, f, q))
+        };
+        let mut tried: Vec<_> = points.into_iter().rev().filter_map(|p| beside(ground.at(p).point)).collect();
+        tried.sort_by(|a, b| b.0.total_cmp(&a.0));
+        // The nearest edge decides the side; a seam has the face on both.
+        let seam = |side: &Inward| sides.iter().filter(|other| other.joint == side.joint).count() > 1;
+        let inside = |side: &Inward, f: f64, way: DVec3, q: DVec3| side.inside(self.sheet.normal(side.of, q), f, way);
+        tried.into_iter().find(|(_, p, side, f, q)| seam(side) || inside(side, *f, *p - *q, *q)).map(|best| best.1)
     }
 
     /// Where the inside of a face is, beside one of its moved edges: for each use of the edge.
@@ -358,7 +359,7 @@ impl Making<'_> {
             let (f, q, _) = chain.closest(jet.p + jet.normal * self.distance);
             let along = chain.jet(f).d1.dot(jet.d1) >= 0.0;
             let tangent = chain.jet(f).d1.normalize_or_zero() * if along { 1.0 } else { -1.0 };
-            Some(Inward { joint: k, chain, along, normal: jet.normal, at: q, way: jet.normal.cross(tangent) })
+            Some(Inward { joint: k, of: *at, chain, along, at: q, way: jet.normal.cross(tangent) })
         };
         joint.uses.iter().filter(|at| at.face == face).filter_map(side).collect()
     }
@@ -370,20 +371,20 @@ const STEPS: [f64; 4] = [0.3, 0.1, 0.03, 0.01];
 /// A moved edge as a border of a face that lies on its left.
 struct Inward<'c> {
     joint: usize,
+    of: Use,
     chain: &'c Chain,
     /// Whether the loop of the face runs as the chain does.
     along: bool,
-    normal: DVec3,
     /// A place of it, and the way from there into the face.
     at: DVec3,
     way: DVec3,
 }
 
 impl Inward<'_> {
-    /// Whether a way from a place of the edge leads into the face.
-    fn inside(&self, f: f64, way: DVec3) -> bool {
+    /// Whether a way from a place of the edge leads into the face, which has a normal there.
+    fn inside(&self, normal: DVec3, f: f64, way: DVec3) -> bool {
         let tangent = self.chain.jet(f).d1 * if self.along { 1.0 } else { -1.0 };
-        self.normal.cross(tangent).dot(way) > 0.0
+        normal.cross(tangent).dot(way) > 0.0
     }
 }
 
