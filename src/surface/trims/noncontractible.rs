@@ -17,20 +17,28 @@ use crate::surface::trims::trim_loop::{TrimLoop, natural};
 
 /// How the two sides of a loop are found.
 struct SideSearch {
-    /// Where along a curve its two sides are looked at: no place that is special for anything.
-    at_fraction: f64,
+    /// Where along a curve its two sides are looked at, no places that are special for anything: at the one farthest from corners.
+    at_fractions: [f64; 5],
     /// How far beside it, as a share of its length, at first.
     first_distance_share: f64,
     /// Halvings of that.
     max_halvings: usize,
+    /// Share of that by which a side is away from all of the loop: beyond another run of the loop it would be nearer to that one.
+    clear_share: f64,
     /// How far beside its border a surface surely is, in nudges of (u, v).
     inward_nudges: f64,
     /// Cells along u and v by which areas are compared.
     cells_each_way: usize,
 }
 
-const SIDES: SideSearch =
-    SideSearch { at_fraction: 0.4873, first_distance_share: 0.01, max_halvings: 12, inward_nudges: 100.0, cells_each_way: 48 };
+const SIDES: SideSearch = SideSearch {
+    at_fractions: [0.4873, 0.2327, 0.7719, 0.3541, 0.6137],
+    first_distance_share: 0.01,
+    max_halvings: 12,
+    clear_share: 0.9,
+    inward_nudges: 100.0,
+    cells_each_way: 48,
+};
 
 /// Which part a loop keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -89,13 +97,16 @@ pub(crate) fn noncontractible(
 /// A point of the surface on each side of a loop.
 fn beside(base: &Surface, chains: &[Chain], tolerance: &Tolerance) -> Option<[DVec3; 2]> {
     let chain = chains.first()?;
-    let jet = chain.jet(SIDES.at_fraction);
+    let corners = chain.kinks(tolerance);
+    let clear = |f: &f64| corners.iter().map(|corner| (corner - f).abs()).fold(f64::INFINITY, f64::min);
+    let clearest = SIDES.at_fractions.into_iter().rev().max_by(|f, g| clear(f).total_cmp(&clear(g)))?;
+    let jet = chain.jet(clearest);
     let at = closest(base, jet.p).uv;
     let aside = base.normal(at.0, at.1).cross(jet.d1).try_normalize()?;
     let mut step = SIDES.first_distance_share * chain.length();
     for _ in 0..SIDES.max_halvings {
         let points = [aside * step, aside * -step].map(|d| closest(base, jet.p + d).point);
-        let far = |p: &DVec3| chains.iter().map(|c| c.closest(*p).2).fold(f64::INFINITY, f64::min) >= 0.5 * step;
+        let far = |p: &DVec3| chains.iter().map(|c| c.closest(*p).2).fold(f64::INFINITY, f64::min) >= SIDES.clear_share * step;
         if points.iter().all(far) {
             return Some(points);
         }
