@@ -228,7 +228,8 @@ impl Leg {
         loop {
             let k = self.normals.partition_point(|known| known.0 <= f).max(1) - 1;
             let (from, normal) = self.normals[k];
-            if from >= f {
+            // A step of a rounding error would begin at the corner that the leg ends in, or beyond it.
+            if f - from <= EPSILON {
                 return normal;
             }
             job::poll();
