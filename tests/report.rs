@@ -204,7 +204,8 @@ fn reports_that_a_screen_folds_are_all_there() {
     assert_eq!(messages.len(), 40);
 }
 
-/// Every member that the reference lists for a kind stands in the report of a thing of that kind, with its unit.
+/// Every member that the reference lists for a kind stands in the report of a thing of that kind, with its unit; the sides of a surface,
+/// which are curves, do not.
 #[test]
 fn an_entity_tells_all_of_its_members() {
     let base = "units m\ncurve south = line((0, 0, 0), (4, 0, 0))\nsurface wall = extrude(south, by: (0, 0, 3))\n\
@@ -226,7 +227,8 @@ fn an_entity_tells_all_of_its_members() {
         assert_eq!(mistakes(&report), Vec::<String>::new());
         let rows = report["reports"][0]["rows"].as_array().unwrap();
         let columns = report["reports"][1]["columns"].as_array().unwrap();
-        let members: Vec<_> = fields().filter(|f| f.params[0].ty.signature() == kind).collect();
+        let is_side = |returns: &str| kind == "surface" && returns == "curve";
+        let members: Vec<_> = fields().filter(|f| f.params[0].ty.signature() == kind && !is_side(&f.returns.signature())).collect();
         assert!(!members.is_empty(), "{kind}");
         for member in members {
             let named = |text: &Value| {
