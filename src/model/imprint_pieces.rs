@@ -85,11 +85,13 @@ impl Model {
             edges.extend(self.sides_of(if m.pair.0 == of { m.pair.1 } else { m.pair.0 }));
             found.extend(m.curves.iter().cloned());
         }
-        // A curve along a seam or a crease cuts: there the surface goes on.
-        let ends_at =
-            |edge: &EdgeId| self.edges[edge.index()].users.iter().filter(|(p, _)| self.patches[p.index()].surface == of).count() == 1;
+        // A curve along a seam cuts: there the face goes on.
+        let is_seam = |edge: &EdgeId| {
+            let users = &self.edges[edge.index()].users;
+            (1..users.len()).any(|k| users[..k].iter().any(|(patch, _)| *patch == users[k].0))
+        };
         let mut borders = Vec::new();
-        for edge in self.sides_of(of).into_iter().filter(ends_at) {
+        for edge in self.sides_of(of).into_iter().filter(|edge| !is_seam(edge)) {
             borders.extend(self.edge_chain(edge, network, tolerance)?);
         }
         let mut kept: Vec<Chain> = Vec::new();
