@@ -306,7 +306,7 @@ fn foot(jet: impl Fn(f64) -> BorderJet, p: DVec3, near: f64, range: (f64, f64)) 
     down(&jet, p, near, range)
 }
 
-/// What is found at one place of a segment; not a number where a face has none.
+/// Two faces at one place of the segment that they share. Angle and jump of curvature are NaN where a face has no normal.
 #[derive(Clone, Copy)]
 struct AtPlace {
     point: DVec3,
@@ -348,7 +348,8 @@ fn contact(a: &SegmentSide, b: &SegmentSide, joins: &Joins, segment: usize) -> C
     }
 }
 
-/// Least, largest and mean of a value over a segment that was looked at in equal steps; places where it is not a number are left out.
+/// Least, largest and mean of a value along a segment, from the places `seen` in equal steps; those where it is NaN are left out. The extremes
+/// are refined by `at`, the faces at any share of the segment.
 fn spread(seen: &[AtPlace], at: impl Fn(f64) -> AtPlace, value: impl Fn(&AtPlace) -> f64) -> Option<Spread> {
     let steps = seen.len() - 1;
     let place = |k: usize| k as f64 / steps as f64;

@@ -15,7 +15,7 @@ use crate::base::par;
 use crate::base::tolerance::{MEASURE_ACCURACY, Tolerance};
 use crate::geometry::data::fault::CurveFault;
 use crate::network::{Chain, Network};
-use crate::surface::intersect::with_curve::with_curve;
+use crate::surface::intersect::with_curve::runs_on;
 use crate::surface::{Domain, Nearest, Surface, over_frame, parted, with_loops};
 
 /// Places along a curve at which it is compared with another one.
@@ -85,7 +85,7 @@ impl Model {
             edges.extend(self.sides_of(if m.pair.0 == of { m.pair.1 } else { m.pair.0 }));
             found.extend(m.curves.iter().cloned());
         }
-        // A curve along a seam cuts: there the face goes on.
+        // Along a seam the face goes on: a curve there cuts it.
         let is_seam = |edge: &EdgeId| {
             let users = &self.edges[edge.index()].users;
             (1..users.len()).any(|k| users[..k].iter().any(|(patch, _)| *patch == users[k].0))
@@ -97,11 +97,7 @@ impl Model {
         let mut kept: Vec<Chain> = Vec::new();
         for edge in edges {
             let Some(way) = self.edge_chain(edge, network, tolerance)? else { continue };
-            for run in with_curve(&way, std::slice::from_ref(surface), tolerance)? {
-                let Some(to) = run.overlap_end.filter(|to| (to - run.f) * way.length() > tolerance.point) else { continue };
-                let whole = run.f <= 0.0 && to >= 1.0;
-                kept.push(if whole { way.clone() } else { way.slice(run.f, to, tolerance)? });
-            }
+            kept.extend(runs_on(&way, surface, tolerance)?);
         }
         // Edges come before curves found by crossing, which may be the same.
         kept.extend(found);

@@ -81,7 +81,7 @@ impl Cx<'_> {
     fn members_of(&mut self, of: &Value) -> Result<Vec<NamedValue>, Halt> {
         let mut members = what(of);
         let (mut any, mut first) = (!members.is_empty(), None);
-        // The sides of a surface are no figures.
+        // The sides of a surface are curves: a table would repeat the name of the surface for each.
         let told = |f: &&Builtin| !(matches!(of, Value::Surface(_)) && f.returns == Ty::Curve);
         for field in std::fields().filter(|f| f.params.first().is_some_and(|p| accepts(p.ty, of))).filter(told) {
             match self.member_value(field, of) {

@@ -169,8 +169,8 @@ fn tilt(chart: &Chart, triangle: ChartTriangle) -> f64 {
     tilt_of(on_own_side(chart, triangle.xy, triangle.xy.map(|xy| normal_at(chart, xy))), triangle.p)
 }
 
-/// Normals at the corners of a triangle, those on a crease replaced by the ones on the side of it where the triangle is: beside a sharp one
-/// the other side's tells that it lies upside down.
+/// The normals at the corners of a triangle with those of corners on a crease taken on the triangle's side of it: by the other side's the
+/// triangle would lie upside down beside a sharp crease. A corner in a pole has none.
 fn on_own_side(chart: &Chart, xy: [DVec2; 3], mut own: [DVec3; 3]) -> [DVec3; 3] {
     let surface = chart.surface();
     let (us, vs) = surface.kinks();
@@ -180,7 +180,9 @@ fn on_own_side(chart: &Chart, xy: [DVec2; 3], mut own: [DVec3; 3]) -> [DVec3; 3]
     let places = xy.map(|xy| DVec2::from(chart.uv(xy)));
     let middle = (places[0] + places[1] + places[2]) / 3.0;
     for (normal, place) in own.iter_mut().zip(places) {
-        if let Some(beside) = surface.normal_on_crease(place, middle) {
+        if *normal != DVec3::ZERO
+            && let Some(beside) = surface.normal_on_crease(place, middle)
+        {
             *normal = beside;
         }
     }

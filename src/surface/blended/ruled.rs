@@ -39,7 +39,8 @@ pub fn ruled_as_drawn(a: &Chain, b: &Chain, origin: Origin, tolerance: &Toleranc
     between((a, b), &as_drawn(a, b, tolerance), origin, tolerance)
 }
 
-/// The same piece by piece, where both curves are made of equally many: as the copies of a curve at two distances from it.
+/// The same, but piece by piece between joints and knots where both curves have equally many of them: copies of one curve at two distances
+/// are joined along its normals if their pieces are lines and arcs.
 pub fn ruled_by_pieces(a: &Chain, b: &Chain, origin: Origin, tolerance: &Tolerance) -> Result<(Surface, Vec<Fault>)> {
     let mut read = as_drawn(a, b, tolerance);
     join_at(&mut read, &chain_breaks, tolerance);

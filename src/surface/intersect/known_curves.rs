@@ -13,13 +13,13 @@ use crate::surface::core::surface::Surface;
 use crate::surface::data::breaks::chain_breaks;
 use crate::surface::data::kind::Domain;
 use crate::surface::intersect::sheet::{Cell, widely_grounded};
-use crate::surface::intersect::with_curve::with_curve;
+use crate::surface::intersect::with_curve::runs_on;
 use crate::surface::rails::side::{Side, between};
 use crate::surface::trims::trim_loop::shifts;
 
 /// Places at which a run of a border is compared with the other face.
 const PROBES: [f64; 5] = [0.03, 0.27, 0.4873, 0.74, 0.97];
-/// A border is followed where one of so many steps begins or ends on the other face.
+/// A border is followed where one of so many steps along it begins or ends on the other face: shorter runs are left to the search.
 const LOOKS: usize = 32;
 /// Faces cross along a border where they do so at this angle at least, radians. Below it they go on into each other.
 const CROSSING: f64 = 1.0 / 256.0;
@@ -43,7 +43,7 @@ pub(crate) struct KnownCurve {
 impl KnownCurve {
     /// Runs of borders of either face that lie on the other one, where the faces cross along them.
     ///
-    /// Fails as [`with_curve`] does.
+    /// Fails as [`runs_on`] does.
     pub fn between(a: &Surface, b: &Surface, tolerance: &Tolerance) -> Result<Vec<Self>> {
         let mut found: Vec<Self> = Vec::new();
         if [a, b].iter().any(|face| face.ground() == Domain::Unbounded) {
@@ -120,15 +120,6 @@ fn near_borders(face: &Surface, other: &Surface, tolerance: &Tolerance) -> Resul
         }
     }
     Ok(found)
-}
-
-/// The runs of a curve that lie on a surface and are no points.
-fn runs_on(chain: &Chain, surface: &Surface, tolerance: &Tolerance) -> Result<Vec<Chain>> {
-    let near = tolerance.point / chain.length();
-    let met = with_curve(chain, std::slice::from_ref(surface), tolerance)?;
-    let runs = met.into_iter().filter_map(|run| Some((run.f, run.overlap_end?))).filter(|(from, to)| to - from > 2.0 * near);
-    let whole = |from: f64, to: f64| from <= near && to >= 1.0 - near;
-    runs.map(|(from, to)| if whole(from, to) { Ok(chain.clone()) } else { chain.slice(from, to, tolerance) }).collect()
 }
 
 /// Places of a curve in the (u, v) of both surfaces, in order: [`STEPS`] to each span between breaks, fewer where there are many.

@@ -73,6 +73,15 @@ pub fn with_curve(chain: &Chain, surfaces: &[Surface], tolerance: &Tolerance) ->
     Ok(out)
 }
 
+/// The runs of a curve that lie on a surface; one that is a point within the tolerance is none. Fails as [`with_curve`] does.
+pub fn runs_on(chain: &Chain, surface: &Surface, tolerance: &Tolerance) -> Result<Vec<Chain>> {
+    let near = tolerance.point / chain.length();
+    let met = with_curve(chain, std::slice::from_ref(surface), tolerance)?;
+    let runs = met.into_iter().filter_map(|run| Some((run.f, run.overlap_end?))).filter(|(from, to)| to - from > near);
+    let whole = |from: f64, to: f64| from <= near && to >= 1.0 - near;
+    runs.map(|(from, to)| if whole(from, to) { Ok(chain.clone()) } else { chain.slice(from, to, tolerance) }).collect()
+}
+
 fn with_one(chain: &Chain, surface: &Surface, tolerance: &Tolerance) -> Result<Vec<SurfaceMeeting>> {
     let curve = chain.to_curve()?;
     // A plane is searched over its own frame: the map of a triangle folds at a corner.

@@ -345,8 +345,8 @@ impl Making<'_> {
         tried.sort_by(|a, b| b.0.total_cmp(&a.0));
         // The nearest edge decides the side; a seam has the face on both.
         let seam = |side: &Inward| sides.iter().filter(|other| other.joint == side.joint).count() > 1;
-        let inside = |side: &Inward, f: f64, way: DVec3, q: DVec3| side.inside(self.sheet.normal(side.of, q), f, way);
-        tried.into_iter().find(|(_, p, side, f, q)| seam(side) || inside(side, *f, *p - *q, *q)).map(|best| best.1)
+        let best = tried.into_iter().find(|(_, p, side, f, q)| seam(side) || side.inside(self.sheet.normal(side.of, *q), *f, *p - *q));
+        best.map(|(_, p, ..)| p)
     }
 
     /// Where the inside of a face is, beside one of its moved edges: for each use of the edge.
@@ -371,6 +371,7 @@ const STEPS: [f64; 4] = [0.3, 0.1, 0.03, 0.01];
 /// A moved edge as a border of a face that lies on its left.
 struct Inward<'c> {
     joint: usize,
+    /// The use of the edge by the face.
     of: Use,
     chain: &'c Chain,
     /// Whether the loop of the face runs as the chain does.
@@ -381,7 +382,7 @@ struct Inward<'c> {
 }
 
 impl Inward<'_> {
-    /// Whether a way from a place of the edge leads into the face, which has a normal there.
+    /// Whether a way from a place of the edge leads into the face; `normal` is the face's there.
     fn inside(&self, normal: DVec3, f: f64, way: DVec3) -> bool {
         let tangent = self.chain.jet(f).d1 * if self.along { 1.0 } else { -1.0 };
         normal.cross(tangent).dot(way) > 0.0

@@ -28,9 +28,10 @@ impl Ring {
         let center = points.iter().sum::<DVec3>() / PLACES as f64;
         let arms: Vec<DVec3> = points.iter().map(|p| *p - center).collect();
         let twice: DVec3 = (0..PLACES).map(|k| arms[k].cross(arms[(k + 1) % PLACES])).sum();
-        let reach = arms.iter().map(|arm| arm.length_squared()).fold(0.0, f64::max);
+        let squares = arms.iter().map(|arm| arm.length_squared());
+        let reach = squares.clone().fold(0.0, f64::max);
         let normal = if twice.length() > PARALLEL * reach { twice.normalize_or_zero() } else { DVec3::ZERO };
-        let size = (arms.iter().map(|arm| arm.length_squared()).sum::<f64>() / PLACES as f64).sqrt();
+        let size = (squares.sum::<f64>() / PLACES as f64).sqrt();
         Self { center, size, normal }
     }
 

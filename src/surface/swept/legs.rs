@@ -228,7 +228,7 @@ impl Leg {
         loop {
             let k = self.normals.partition_point(|known| known.0 <= f).max(1) - 1;
             let (from, normal) = self.normals[k];
-            // A step of a rounding error would begin at the corner that the leg ends in, or beyond it.
+            // A step as short as rounding may begin at the corner that ends the leg, with the tangent beyond it.
             if f - from <= EPSILON {
                 return normal;
             }

@@ -117,23 +117,22 @@ pub fn split(whole: &Surface, cutters: &[Chain], origin: Origin, tolerance: &Tol
     parts(whole, base, &dividing(base, cutters, Meets::Anywhere, tolerance)?, origin, tolerance)
 }
 
-/// The same of curves of which some may cut nothing off: they are left out. `None` where all do.
+/// All parts into which those of some curves divide a surface that cut something off, together with its own border; `None` where none does.
+/// Otherwise as [`split`].
 pub fn parted(whole: &Surface, cutters: &[Chain], origin: Origin, tolerance: &Tolerance) -> Result<Option<Vec<Surface>>> {
     if cutters.is_empty() {
         return Ok(None);
     }
     let base = &plane::unmapped(whole, tolerance)?;
     let (dividing, _) = arranged(base, cutters, Meets::Anywhere, tolerance)?;
-    if !dividing.is_cut {
+    // Along a seam alone a curve cuts nothing off either.
+    if dividing.pieces.iter().all(|piece| piece.rim) {
         return Ok(None);
     }
-    let found = parts(whole, base, &dividing, origin, tolerance)?;
-    // A curve along a seam alone only says where an edge is already.
-    let seam_alone = found.len() == 1 && dividing.pieces.iter().all(|piece| piece.rim);
-    Ok((!seam_alone).then_some(found))
+    parts(whole, base, &dividing, origin, tolerance).map(Some)
 }
 
-/// The parts of a surface, of which `base` is without a map, between what divides it.
+/// The parts into which curves divide a surface; `base` is the same surface without a map.
 fn parts(whole: &Surface, base: &Surface, dividing: &Dividing, origin: Origin, tolerance: &Tolerance) -> Result<Vec<Surface>> {
     let cells = Cells::new(base, &dividing.pieces, &dividing.edges, tolerance)?;
     let part = |face: &FaceLoops| Ok(assembled(base, trim_loops(&dividing.pieces, face), origin)?.cut_from(std::slice::from_ref(whole)));
@@ -167,8 +166,6 @@ fn undivided(base: &Surface, dividing: &Dividing, parts: usize, tolerance: &Tole
 pub(crate) struct Dividing {
     pub pieces: Vec<Piece>,
     pub edges: Vec<Edge>,
-    /// Whether a curve runs inside, or along a seam, and makes it a border.
-    is_cut: bool,
 }
 
 /// The pieces of the border and of curves that divide a surface, loose ends left out; E659 where one of the curves cuts nothing off.
@@ -177,7 +174,7 @@ pub(crate) fn dividing(base: &Surface, cutters: &[Chain], meets: Meets, toleranc
     idle.map_or(Ok(dividing), |fault| Err(fault.into()))
 }
 
-/// The same, with the first of the curves that cut nothing off.
+/// The same where curves may cut nothing off: with the fault of the first one that does not.
 fn arranged(base: &Surface, cutters: &[Chain], meets: Meets, tolerance: &Tolerance) -> Result<(Dividing, Option<CutFault>)> {
     let curves = dividing_curves(base, cutters, meets, tolerance)?;
     let (all, along) = pieces(base, &curves, tolerance)?;
@@ -207,9 +204,8 @@ fn arranged(base: &Surface, cutters: &[Chain], meets: Meets, tolerance: &Toleran
         break;
     }
     let kept = || (0..all.len()).filter(|i| stays[*i]);
-    let is_cut = kept().any(|i| !all[i].rim || curves[all[i].curve].seam && !all[i].seam);
     let (pieces, edges) = kept().map(|i| (all[i].clone(), edges[i].clone())).unzip();
-    Ok((Dividing { pieces, edges, is_cut }, idle))
+    Ok((Dividing { pieces, edges }, idle))
 }
 
 /// The foot of the point to keep.

@@ -17,13 +17,14 @@ use crate::surface::trims::trim_loop::{TrimLoop, natural};
 
 /// How the two sides of a loop are found.
 struct SideSearch {
-    /// Where along a curve its two sides are looked at, no places that are special for anything: at the one farthest from corners.
+    /// Shares of a curve; its two sides are looked for at the one farthest from its corners.
     at_fractions: [f64; 5],
     /// How far beside it, as a share of its length, at first.
     first_distance_share: f64,
     /// Halvings of that.
     max_halvings: usize,
-    /// Share of that by which a side is away from all of the loop: beyond another run of the loop it would be nearer to that one.
+    /// Least distance of a side from the whole loop, as a share of how far beside it is looked for. Nearer than this it may lie beyond
+    /// another run of the loop.
     clear_share: f64,
     /// How far beside its border a surface surely is, in nudges of (u, v).
     inward_nudges: f64,
