@@ -9,7 +9,7 @@ use crate::base::job;
 use crate::base::quadrature::{self, RUNNING};
 use crate::base::tolerance::{EPSILON, MEASURE_ACCURACY, NEWTON_STEP, Tolerance};
 use crate::network::{Chain, Network};
-use crate::surface::{OneSided, PreparedSurface, Surface};
+use crate::surface::{LineEvaluator, OneSided, PreparedSurface, Surface};
 
 /// Halvings of one piece before its length is taken as it is; the line is cut at kinks, so this is far from reached.
 const DEPTH: u32 = 24;
@@ -22,6 +22,8 @@ const STEPS: usize = 60;
 #[derive(Clone, Debug)]
 pub struct Trace {
     prepared: PreparedSurface,
+    /// Of a line of constant u or v on a blend of curves.
+    line: Option<LineEvaluator>,
     from: (f64, f64),
     to: (f64, f64),
     panels: Vec<Panel>,
@@ -29,7 +31,7 @@ pub struct Trace {
 }
 
 // The others follow from these.
-crate::content!(Trace { prepared, from, to } but { panels, length });
+crate::content!(Trace { prepared, from, to } but { line, panels, length });
 
 /// One piece whose length is a known polynomial of the place.
 #[derive(Clone, Debug)]
@@ -47,7 +49,9 @@ impl Trace {
 
     /// The same line on a surface prepared for many evaluations.
     pub fn of_prepared(prepared: PreparedSurface, from: (f64, f64), to: (f64, f64)) -> Self {
-        let mut trace = Self { prepared, from, to, panels: Vec::new(), length: 0.0 };
+        let is_iso = (from.0 == to.0) != (from.1 == to.1) && !prepared.evaluator().has_power_form();
+        let line = if is_iso { prepared.surface().line_evaluator(from, from.1 == to.1) } else { None };
+        let mut trace = Self { prepared, line, from, to, panels: Vec::new(), length: 0.0 };
         let surface = trace.prepared.surface();
         let (start, end) = (surface.point(from.0, from.1), surface.point(to.0, to.1));
         // Along a pole all is rounding.
@@ -87,9 +91,15 @@ impl Trace {
     pub fn jet(&self, t: f64) -> (DVec3, DVec3) {
         let (u, v) = self.uv(t);
         let (along_u, along_v) = (self.to.0 - self.from.0, self.to.1 - self.from.1);
-        let [p, du, dv] = if t == 0.0 || t == 1.0 {
-            // A line may end at a kink: its own direction there is that of what it comes from.
-            let lean = |way: f64| if way != 0.0 && (t == 0.0) != (way > 0.0) { OneSided::Before } else { OneSided::After };
+        // A line may end at a kink: its own direction there is that of what it comes from.
+        let ends = t == 0.0 || t == 1.0;
+        let lean = |way: f64| if ends && way != 0.0 && (t == 0.0) != (way > 0.0) { OneSided::Before } else { OneSided::After };
+        if let Some(line) = &self.line {
+            let way = along_u + along_v;
+            let (p, d1) = line.jet((u, v), lean(way));
+            return (p, d1 * way);
+        }
+        let [p, du, dv] = if ends {
             let jet = self.prepared.surface().jet_one_sided(u, v, (lean(along_u), lean(along_v)));
             [jet.p, jet.du, jet.dv]
         } else {

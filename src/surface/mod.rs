@@ -47,6 +47,7 @@ pub use crate::surface::closest::nearest::{Closest, Nearest, closest};
 pub use crate::surface::core::enclosure::Strip;
 pub use crate::surface::core::evaluator::{Evaluator, PreparedSurface};
 pub use crate::surface::core::evened::Evened;
+pub use crate::surface::core::line_evaluator::LineEvaluator;
 pub use crate::surface::core::surface::Surface;
 pub use crate::surface::data::breaks::chain_breaks;
 pub use crate::surface::data::enclosure::Enclosure;

@@ -6,6 +6,7 @@ pub mod evaluator;
 pub mod evened;
 pub mod joined;
 pub mod joined_piece;
+pub mod line_evaluator;
 mod normals;
 pub mod plane;
 pub mod power_form;

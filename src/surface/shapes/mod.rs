@@ -5,6 +5,7 @@ mod axis_powers;
 pub mod blend;
 pub mod blend_enclosure;
 mod blend_grid;
+pub mod blend_line;
 pub mod blend_powers;
 mod blend_terms;
 mod blend_track;
