@@ -12,7 +12,7 @@ use glam::{DVec2, DVec3};
 
 use crate::base::bbox::Box3;
 use crate::base::range::Interval3;
-use crate::base::tolerance::{EPSILON, LENGTH_ACCURACY, NEAREST, NUDGE, SHORT_TANGENT, SLIVER};
+use crate::base::tolerance::{EPSILON, LENGTH_ACCURACY, NEAREST, SHORT_TANGENT, SLIVER};
 use crate::surface::data::jet::Jet2;
 use crate::surface::data::one_sided::OneSided;
 use crate::surface::rails::rail::Rail;
@@ -62,7 +62,7 @@ struct Place {
 }
 
 impl BlendPowers {
-    /// `None` of polynomial blends of many curves, and of curves with knots or corners nearer to each other than a millionth of the range.
+    /// `None` of polynomial blends of many curves.
     pub(crate) fn new(blend: &Blend) -> Option<Self> {
         let (u, v) = blend.axes();
         let powers = [AxisPowers::new(u)?, AxisPowers::new(v)?];
@@ -70,11 +70,6 @@ impl BlendPowers {
         let hull = rails.iter().flat_map(|rails| rails.iter()).map(Rail::hull).reduce(Box3::union)?;
         let tracks = [0, 1].map(|k| Track::new(rails[k], [u, v][k], &powers[k], hull.diagonal()));
         let size = hull.diagonal();
-        // Over a narrower part second derivatives of polynomials are the rounding of their values.
-        let narrow = |track: &Track| track.stops.windows(2).any(|w| w[1] - w[0] < NUDGE);
-        if tracks.iter().any(narrow) {
-            return None;
-        }
         let furthest = hull.min.abs().max(hull.max.abs()).max_element();
         let columns = [(0, 1), (1, 0)].map(|(of, along)| {
             let count = powers[of].terms.len() * tracks[along].parts.len();

@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use glam::DVec3;
 
 use crate::base::math;
-use crate::base::tolerance::{NEAREST, SLIVER};
+use crate::base::tolerance::{NEAREST, NUDGE, SLIVER};
 use crate::surface::data::breaks::tidy;
 use crate::surface::data::one_sided::OneSided;
 use crate::surface::rails::rail::Rail;
@@ -73,8 +73,12 @@ impl Track {
         (0..pieces).flat_map(|n| places.iter().map(move |x| a + width * (n as f64 + 0.5 * (x + 1.0)))).collect()
     }
 
-    /// The curves over a part; `None` where polynomials do not come near to one of them, by what is allowed and the size of all.
+    /// The curves over a part; `None` where polynomials do not come near to one of them, by what is allowed and the size of all, and over
+    /// a part narrower than a millionth of the range: there second derivatives of polynomials are the rounding of their values.
     pub fn sampled(&self, rails: &[Rail], part: usize, (allowed, size): (f64, f64)) -> Option<Sampled> {
+        if self.stops[part + 1] - self.stops[part] < NUDGE {
+            return None;
+        }
         let mut halvings = 0;
         while halvings <= DEEPEST {
             let (nodes, compared) = (self.places(part, halvings), self.spread(part, halvings, &COMPARED));
