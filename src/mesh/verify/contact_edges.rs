@@ -8,7 +8,7 @@ use crate::base::par;
 use crate::mesh::verify::contact_scan::Scan;
 use crate::model::SurfaceId;
 use crate::network::Chain;
-use crate::surface::intersect::with_curve::{SurfaceMeeting, with_curve};
+use crate::surface::intersect::with_curve::{CurveSearch, SurfaceMeeting};
 use crate::surface::{Surface, with_loops};
 
 /// A segment of an edge and a face near it.
@@ -60,13 +60,14 @@ pub(crate) fn meetings(scan: &Scan, tasks: &[EdgeFace]) -> Vec<Option<Met>> {
     // An edge meets a surface once, whatever the segments of the one and the faces of the other.
     let pair = |task: &EdgeFace| Some((places.get(&task.segment)?.edge, scan.surface_of(task.face)));
     let pairs: BTreeSet<(usize, SurfaceId)> = tasks.iter().filter_map(pair).collect();
-    let pairs: Vec<(usize, SurfaceId)> = pairs.into_iter().collect();
-    let found = par::map(pairs.len(), |n| {
-        let (way, surface) = (ways.get(&pairs[n].0)?, surfaces.get(&pairs[n].1)?);
-        with_curve(way, std::slice::from_ref(surface), tolerance).ok()
-    });
-    let found: BTreeMap<(usize, SurfaceId), Vec<SurfaceMeeting>> =
-        pairs.into_iter().zip(found).filter_map(|(pair, found)| Some((pair, found?))).collect();
+    let surfaces: Vec<(SurfaceId, Surface)> = surfaces.into_iter().collect();
+    let on_one = |n: usize| {
+        let (id, surface) = &surfaces[n];
+        let Ok(mut search) = CurveSearch::new(surface, tolerance) else { return Vec::new() };
+        let edges = pairs.iter().filter(|pair| pair.1 == *id);
+        edges.filter_map(|pair| Some((*pair, search.with_curve(ways.get(&pair.0)?).ok()?))).collect()
+    };
+    let found: BTreeMap<(usize, SurfaceId), Vec<SurfaceMeeting>> = par::map(surfaces.len(), on_one).into_iter().flatten().collect();
     let of = |task: &EdgeFace| {
         let place = places.get(&task.segment)?;
         let way = ways.get(&place.edge)?;

@@ -19,7 +19,7 @@ use crate::surface::data::kind::Domain;
 use crate::surface::intersect::coplanar::is_flat;
 use crate::surface::intersect::curve_overlap::SHORTEST_OVERLAP;
 use crate::surface::intersect::curve_patch::{Contact, CurveTouch, contacts};
-use crate::surface::intersect::sheet::{Patch, Sheet, grounded, patches};
+use crate::surface::intersect::sheet::{Sheet, grounded, patches};
 use crate::surface::rails::side::Side;
 use crate::surface::trims::compose::rational;
 use crate::surface::trims::trim::over_frame;
@@ -54,8 +54,13 @@ pub(crate) fn long(tolerance: &Tolerance, size: f64) -> f64 {
 pub fn with_curve(chain: &Chain, surfaces: &[Surface], tolerance: &Tolerance) -> Result<Vec<SurfaceMeeting>> {
     let mut all: Vec<SurfaceMeeting> = Vec::new();
     for surface in surfaces {
-        all.extend(with_one(chain, surface, tolerance)?);
+        all.extend(CurveSearch::new(surface, tolerance)?.meetings(chain)?);
     }
+    Ok(united_meetings(all, chain, tolerance))
+}
+
+/// Meetings with surfaces in order along the curve, each place once.
+fn united_meetings(mut all: Vec<SurfaceMeeting>, chain: &Chain, tolerance: &Tolerance) -> Vec<SurfaceMeeting> {
     all.sort_by(|a, b| a.f.total_cmp(&b.f));
     let near = tolerance.point / chain.length();
     let mut out: Vec<SurfaceMeeting> = Vec::with_capacity(all.len());
@@ -70,7 +75,7 @@ pub fn with_curve(chain: &Chain, surfaces: &[Surface], tolerance: &Tolerance) ->
             _ => out.push(m),
         }
     }
-    Ok(out)
+    out
 }
 
 /// The runs of a curve that lie on a surface; one that is a point within the tolerance is none. Fails as [`with_curve`] does.
@@ -82,15 +87,68 @@ pub fn runs_on(chain: &Chain, surface: &Surface, tolerance: &Tolerance) -> Resul
     runs.map(|(from, to)| if whole(from, to) { Ok(chain.clone()) } else { chain.slice(from, to, tolerance) }).collect()
 }
 
-fn with_one(chain: &Chain, surface: &Surface, tolerance: &Tolerance) -> Result<Vec<SurfaceMeeting>> {
-    let curve = chain.to_curve()?;
-    // A plane is searched over its own frame: the map of a triangle folds at a corner.
-    let (mapped, surface) = (surface, &over_frame(surface, tolerance)?);
-    let length = curve.length();
-    let (overlaps, mut points) = match in_plane(chain, &curve, surface, tolerance)? {
-        Some(found) => found,
-        None => searched(&curve, surface, tolerance)?,
-    };
+/// A surface that curves are met with: bounds of it that one curve asked for serve the next.
+pub(crate) struct CurveSearch<'a> {
+    mapped: &'a Surface,
+    /// The same over its own frame where it is a plane: the map of a triangle folds at a corner.
+    surface: Surface,
+    /// Its patches between kink lines, once they are asked for.
+    sheets: Vec<Sheet>,
+    tolerance: &'a Tolerance,
+}
+
+impl<'a> CurveSearch<'a> {
+    /// A surface within a tolerance.
+    pub(crate) fn new(mapped: &'a Surface, tolerance: &'a Tolerance) -> Result<Self> {
+        Ok(Self { mapped, surface: over_frame(mapped, tolerance)?, sheets: Vec::new(), tolerance })
+    }
+
+    /// What [`with_curve`] finds on this surface.
+    pub(crate) fn with_curve(&mut self, chain: &Chain) -> Result<Vec<SurfaceMeeting>> {
+        Ok(united_meetings(self.meetings(chain)?, chain, self.tolerance))
+    }
+
+    fn meetings(&mut self, chain: &Chain) -> Result<Vec<SurfaceMeeting>> {
+        let curve = chain.to_curve()?;
+        let (overlaps, points) = match in_plane(chain, &curve, &self.surface, self.tolerance)? {
+            Some(found) => found,
+            None => self.searched(&curve)?,
+        };
+        kept(chain, curve.length(), (self.mapped, &self.surface), (overlaps, points), self.tolerance)
+    }
+
+    /// Overlaps of a curve and the surface without its loops, and other meetings, both by fractions of the curve.
+    fn searched(&mut self, curve: &Curve) -> Result<(Vec<Stretch>, Vec<CurveTouch>)> {
+        let over = |reach| patches(&grounded(&self.surface, reach)).into_iter().map(Sheet::new).collect::<Vec<_>>();
+        // Of an unbounded plane the part that the curve reaches.
+        if self.sheets.is_empty() || self.surface.ground() == Domain::Unbounded {
+            self.sheets = over(curve.bbox());
+        }
+        let mut found: Vec<Contact> = Vec::new();
+        for sheet in &mut self.sheets {
+            found.extend(on_patch(curve, sheet, self.tolerance)?);
+        }
+        let length = curve.length();
+        let fraction = |t: f64| curve.length_at(t) / length;
+        let (mut overlaps, mut points): (Vec<Stretch>, Vec<CurveTouch>) = (Vec::new(), Vec::new());
+        for contact in found {
+            match contact {
+                Contact::Overlap { t } => overlaps.push((fraction(t.0), fraction(t.1))),
+                Contact::Point(touch) => points.push(CurveTouch { t: fraction(touch.t), ..touch }),
+            }
+        }
+        Ok((overlaps, points))
+    }
+}
+
+/// The meetings that the kept part of a surface has, over its frame and as it is mapped; `length` is that of the curve.
+fn kept(
+    chain: &Chain,
+    length: f64,
+    (mapped, surface): (&Surface, &Surface),
+    (overlaps, mut points): (Vec<Stretch>, Vec<CurveTouch>),
+    tolerance: &Tolerance,
+) -> Result<Vec<SurfaceMeeting>> {
     let near = tolerance.point / length;
     let mut out = Vec::new();
     for (from, to) in kept_intervals(chain, surface, united(overlaps, &points, near), tolerance)? {
@@ -172,29 +230,10 @@ fn in_plane(chain: &Chain, curve: &Curve, surface: &Surface, tolerance: &Toleran
 /// A part of a curve, from one fraction of its length to another.
 type Stretch = (f64, f64);
 
-/// Overlaps of a curve and a surface without its loops, and other meetings, both by fractions of the curve.
-fn searched(curve: &Curve, surface: &Surface, tolerance: &Tolerance) -> Result<(Vec<Stretch>, Vec<CurveTouch>)> {
-    let mut found: Vec<Contact> = Vec::new();
-    for patch in patches(&grounded(surface, curve.bbox())) {
-        found.extend(on_patch(curve, patch, tolerance)?);
-    }
-    let length = curve.length();
-    let fraction = |t: f64| curve.length_at(t) / length;
-    let (mut overlaps, mut points): (Vec<Stretch>, Vec<CurveTouch>) = (Vec::new(), Vec::new());
-    for contact in found {
-        match contact {
-            Contact::Overlap { t } => overlaps.push((fraction(t.0), fraction(t.1))),
-            Contact::Point(touch) => points.push(CurveTouch { t: fraction(touch.t), ..touch }),
-        }
-    }
-    Ok((overlaps, points))
-}
-
 /// Meetings of a curve with one patch.
-fn on_patch(curve: &Curve, patch: Patch, tolerance: &Tolerance) -> Result<Vec<Contact>> {
-    let mut sheet = Sheet::new(patch);
+fn on_patch(curve: &Curve, sheet: &mut Sheet, tolerance: &Tolerance) -> Result<Vec<Contact>> {
     let size = curve.bbox().diagonal().min(sheet.bounds().diagonal());
-    contacts(curve, &mut sheet, tolerance.point, long(tolerance, size)).map_err(|at| {
+    contacts(curve, sheet, tolerance.point, long(tolerance, size)).map_err(|at| {
         let what = "where the curve meets the surface".to_owned();
         CurveFault::NotConverged { of: curve.origin(), what, at }.into()
     })
