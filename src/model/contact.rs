@@ -16,7 +16,7 @@ use crate::base::par;
 use crate::base::solve::lowest;
 use crate::base::tolerance::{NEAREST, PARALLEL, Tolerance};
 use crate::network::Network;
-use crate::surface::{OneSided, Surface};
+use crate::surface::{Jet2, OneSided, Surface};
 
 /// Steps of a segment, at the least.
 const STEPS: usize = 200;
@@ -90,26 +90,15 @@ impl SegmentSide<'_> {
         foot(|s| self.jet(s), p, near, (self.ends.0.min(self.ends.1), self.ends.0.max(self.ends.1))).0
     }
 
-    /// The face's unit normal at (u, v) on its border, from inside.
-    fn normal(&self, (u, v): (f64, f64)) -> DVec3 {
+    /// Point and derivatives of the face at (u, v) on its border, from inside.
+    fn inside(&self, (u, v): (f64, f64)) -> Jet2 {
         let lean = |x: f64, (low, high): (f64, f64)| if x - low > high - x { OneSided::Before } else { OneSided::After };
-        self.surface.normal_one_sided(u, v, (lean(u, self.patch.u), lean(v, self.patch.v)))
+        self.surface.jet_one_sided(u, v, (lean(u, self.patch.u), lean(v, self.patch.v)))
     }
 
-    /// Normal curvature of the face at (u, v) on its border across a direction, seen from a unit normal, 1/model units; not a number
-    /// where the face is singular.
-    fn curvature_across(&self, (u, v): (f64, f64), along: DVec3, normal: DVec3) -> f64 {
-        let side = |x: f64, (low, high): (f64, f64)| if x - low > high - x { OneSided::Before } else { OneSided::After };
-        let jet = self.surface.jet_one_sided(u, v, (side(u, self.patch.u), side(v, self.patch.v)));
-        let across = normal.cross(along).normalize_or_zero();
-        let (e, f, g) = (jet.du.length_squared(), jet.du.dot(jet.dv), jet.dv.length_squared());
-        let area = e * g - f * f;
-        if area <= PARALLEL * e * g || across == DVec3::ZERO {
-            return f64::NAN;
-        }
-        let (p, q) = (across.dot(jet.du), across.dot(jet.dv));
-        let (a, b) = ((g * p - f * q) / area, (e * q - f * p) / area);
-        a * a * jet.duu.dot(normal) + 2.0 * a * b * jet.duv.dot(normal) + b * b * jet.dvv.dot(normal)
+    /// The face's unit normal at (u, v) on its border, from inside.
+    fn normal(&self, uv: (f64, f64)) -> DVec3 {
+        self.surface.normal_of(&self.inside(uv), uv)
     }
 
     /// Spans of the surface along the segment.
@@ -315,11 +304,25 @@ struct AtPlace {
     curvature: f64,
 }
 
+/// Normal curvature of a face across a direction, seen from a unit normal, 1/model units; not a number where the face is singular.
+fn curvature_across(jet: &Jet2, along: DVec3, normal: DVec3) -> f64 {
+    let across = normal.cross(along).normalize_or_zero();
+    let (e, f, g) = (jet.du.length_squared(), jet.du.dot(jet.dv), jet.dv.length_squared());
+    let area = e * g - f * f;
+    if area <= PARALLEL * e * g || across == DVec3::ZERO {
+        return f64::NAN;
+    }
+    let (p, q) = (across.dot(jet.du), across.dot(jet.dv));
+    let (a, b) = ((g * p - f * q) / area, (e * q - f * p) / area);
+    a * a * jet.duu.dot(normal) + 2.0 * a * b * jet.duv.dot(normal) + b * b * jet.dvv.dot(normal)
+}
+
 /// Gap, angle and jump of curvature at a share of the segment that two borders share.
 fn at_place(a: &SegmentSide, b: &SegmentSide, f: f64) -> AtPlace {
     let (uv, point, along) = a.jet(a.station(f));
     let (other, q, _) = b.jet(b.foot(point, b.station(f)));
-    let (m, n) = (a.normal(uv), b.normal(other));
+    let (own, beside) = (a.inside(uv), b.inside(other));
+    let (m, n) = (a.surface.normal_of(&own, uv), b.surface.normal_of(&beside, other));
     let gap = point.distance(q);
     if m == DVec3::ZERO || n == DVec3::ZERO {
         return AtPlace { point, gap, angle: f64::NAN, curvature: f64::NAN };
@@ -327,7 +330,7 @@ fn at_place(a: &SegmentSide, b: &SegmentSide, f: f64) -> AtPlace {
     let turn = angle_between(m, n);
     let angle = turn.min(std::f64::consts::PI - turn);
     let n = if m.dot(n) < 0.0 { -n } else { n };
-    let curvature = (a.curvature_across(uv, along, m) - b.curvature_across(other, along, n)).abs();
+    let curvature = (curvature_across(&own, along, m) - curvature_across(&beside, along, n)).abs();
     AtPlace { point, gap, angle, curvature }
 }
 

@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use crate::base::tolerance::{EPSILON, POLE_STEP, Tolerance};
 use crate::surface::core::surface::Surface;
-use crate::surface::data::jet::unit_normal;
+use crate::surface::data::jet::{Jet2, unit_normal};
 use crate::surface::data::kind::Domain;
 use crate::surface::data::one_sided::OneSided;
 use crate::surface::rails::side::Side;
@@ -35,8 +35,12 @@ impl Surface {
 
     /// Unit normal of the smooth piece on the given side, see [`Surface::jet_one_sided`].
     pub fn normal_one_sided(&self, u: f64, v: f64, side: (OneSided, OneSided)) -> DVec3 {
-        let jet = self.jet_one_sided(u, v, side);
-        if let Some(normal) = unit_normal(&jet) {
+        self.normal_of(&self.jet_one_sided(u, v, side), (u, v))
+    }
+
+    /// Unit normal at a place whose derivatives are known, see [`Surface::normal_one_sided`].
+    pub fn normal_of(&self, jet: &Jet2, (u, v): (f64, f64)) -> DVec3 {
+        if let Some(normal) = unit_normal(jet) {
             return normal;
         }
         let at_end = [v == 0.0, u == 1.0, v == 1.0, u == 0.0];

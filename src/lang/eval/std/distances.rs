@@ -20,7 +20,7 @@ use crate::model::apart::{between, from_curve};
 use crate::network::Chain;
 use crate::network::meet::closest_points;
 use crate::surface::core::plane;
-use crate::surface::{Nearest, Surface, SurfaceKind, axis_of};
+use crate::surface::{Domain, Nearest, Surface, SurfaceKind, axis_of};
 
 /// What a distance is taken from.
 enum Figure {
@@ -68,7 +68,7 @@ fn distance(cx: &mut Cx, a: Value, b: Value) -> Result<Quantity, Halt> {
         (Figure::Point(p), Figure::Curve(c)) | (Figure::Curve(c), Figure::Point(p)) => least([c.closest(place(cx, p)?).2].into_iter()),
         (Figure::Point(p), Figure::Faces(f)) | (Figure::Faces(f), Figure::Point(p)) => {
             let p = place(cx, p)?;
-            least(f.iter().map(|s| cx.machine.feet.of(s).at(p).distance))
+            least([to_faces(cx, &f, p)].into_iter())
         }
         (Figure::Curve(a), Figure::Curve(b)) => {
             let (p, q) = closest_points(&a, &b);
@@ -77,6 +77,23 @@ fn distance(cx: &mut Cx, a: Value, b: Value) -> Result<Quantity, Halt> {
         (Figure::Curve(c), Figure::Faces(f)) | (Figure::Faces(f), Figure::Curve(c)) => least(f.iter().map(|s| from_curve(s, &c))),
         (Figure::Faces(a), Figure::Faces(b)) => least(a.iter().flat_map(|a| b.iter().map(|b| between(a, b)))),
     })
+}
+
+/// Shortest distance of a point from faces, model units: the nearer boxes first, since what lies behind the nearest point found is not asked.
+fn to_faces(cx: &mut Cx, faces: &[Surface], p: DVec3) -> f64 {
+    let beyond = |face: &Surface| if face.domain() == Domain::Unbounded { 0.0 } else { face.hull().distance_squared(p).sqrt() };
+    let mut order: Vec<(f64, &Surface)> = match faces {
+        [one] => vec![(0.0, one)],
+        several => several.iter().map(|face| (beyond(face), face)).collect(),
+    };
+    order.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut nearest = f64::INFINITY;
+    for (beyond, face) in order {
+        if beyond < nearest {
+            nearest = nearest.min(cx.machine.feet.of(face).at(p).distance);
+        }
+    }
+    nearest
 }
 
 /// What an angle is taken from: a direction, or a plane by its normal.
