@@ -1,5 +1,7 @@
 //! Areas, volumes and centroids that a file states, against those of what came in.
 
+use std::collections::BTreeSet;
+
 use crate::base::bbox::Box3;
 use crate::base::job;
 use crate::base::tolerance::STATED;
@@ -16,8 +18,9 @@ impl Part {
 
     fn difference(&self, stated: &Stated) -> Option<Malformed> {
         job::poll();
-        let surfaces: Vec<Surface> = stated.surfaces.iter().filter_map(|k| self.built.get(*k)).flatten().cloned().collect();
-        let faces = || surfaces.iter().map(|s| (s.clone(), false)).collect::<Vec<(Surface, bool)>>();
+        let built = |places: &[usize]| -> Vec<Surface> { places.iter().filter_map(|k| self.built.get(*k)).flatten().cloned().collect() };
+        let surfaces = built(&stated.surfaces);
+        let faces = || built(&self.round_volumes(&stated.surfaces)).into_iter().map(|s| (s, false)).collect::<Vec<(Surface, bool)>>();
         let compared = |word: &str, found: f64, given: f64, unit: &str| {
             let off = (found - given) / given;
             let difference =
@@ -43,5 +46,12 @@ impl Part {
                 (off.min(of_faces) > STATED * size).then(|| Malformed::line(stated.line, difference))
             }
         }
+    }
+
+    /// Those of some faces that solids have: sheets beside them have no volume. All of them where no solid has any.
+    fn round_volumes(&self, faces: &[usize]) -> Vec<usize> {
+        let of_solids: BTreeSet<usize> = self.solids.iter().flat_map(|solid| solid.surfaces.iter().copied()).collect();
+        let inside: Vec<usize> = faces.iter().copied().filter(|face| of_solids.contains(face)).collect();
+        if inside.is_empty() { faces.to_vec() } else { inside }
     }
 }
