@@ -1,5 +1,6 @@
 //! `check`, `report`, `export`, `picture`: evaluated to plain data that the session shows and writes.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::base::origin::Origin;
@@ -98,7 +99,7 @@ impl Cx<'_> {
         };
         let (path, path_origin) = path.unwrap_or_default();
         let units = word("units").and_then(|(w, origin)| units::file_unit(&w).map(|u| (u, origin)));
-        let things = things.unwrap_or_default();
+        let things = once(things.unwrap_or_default());
         let elements = find(&settings, "element").map_or_else(Vec::new, |said| self.elements(code, written, &said.value, said.origin));
         let incomplete = said(&settings, "incomplete", truth).is_some_and(|said| said.0);
         let (encoding, schema, shells) = (word("encoding"), word("schema"), word("shells"));
@@ -267,4 +268,28 @@ fn rounded(x: f64) -> String {
 
 fn rounded_value(x: f64) -> f64 {
     format!("{x:.3e}").parse().unwrap_or(x)
+}
+
+/// Each surface and shell once, where it is named first: a group may hold what stands beside it, and twice in a file it would be two bodies.
+fn once(things: Vec<(Value, Origin)>) -> Vec<(Value, Origin)> {
+    let mut known: BTreeMap<Origin, Vec<Value>> = BTreeMap::new();
+    let mut is_new = |value: &Value| {
+        let of = match value {
+            Value::Surface(surface) => surface.origin(),
+            Value::Shell(shell) => shell.origin,
+            _ => return true,
+        };
+        let same = |other: &Value| match (value, other) {
+            (Value::Surface(a), Value::Surface(b)) => a.is(b),
+            (Value::Shell(a), Value::Shell(b)) => {
+                a.surfaces.len() == b.surfaces.len() && a.surfaces.iter().zip(&b.surfaces).all(|(a, b)| a.is(b))
+            }
+            _ => false,
+        };
+        let known = known.entry(of).or_default();
+        let is_new = !known.iter().any(same);
+        known.extend(is_new.then(|| value.clone()));
+        is_new
+    };
+    things.into_iter().filter(|(value, _)| is_new(value)).collect()
 }
