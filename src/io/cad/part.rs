@@ -202,6 +202,13 @@ impl Part {
     pub fn n_faces(&self) -> usize {
         self.surfaces.len() + self.unusable.iter().filter(|face| face.face.is_none()).count()
     }
+
+    /// Makes groups of the layers that the file has names for.
+    pub fn group_layers(&mut self, names: &mut UniqueNames) {
+        for layer in self.layers.iter().filter(|layer| layer.own.is_some() && !layer.is_empty()) {
+            self.groups.push(Group { name: names.give(&layer.name), ..layer.clone() });
+        }
+    }
 }
 
 impl Group {

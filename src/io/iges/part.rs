@@ -115,6 +115,7 @@ impl IgesPartBuilder {
         self.unknown();
         self.gaps();
         self.part.layers = std::mem::take(&mut self.levels).layers(&self.table);
+        self.part.group_layers(&mut self.names);
         self.part.warnings = std::mem::take(&mut self.table.warnings);
         self.part
     }

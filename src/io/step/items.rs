@@ -31,6 +31,8 @@ pub struct Bundle {
     pub sort: BundleKind,
     /// Its entity.
     pub entity: u32,
+    /// The model whose only shell it is.
+    pub model: Option<u32>,
     /// First and last point, curve and face, the latter not included.
     pub ranges: [(usize, usize); 3],
 }
@@ -55,7 +57,7 @@ impl Item {
 
     fn bundle(&mut self, sort: BundleKind, entity: u32, from: [usize; 3]) {
         let to = self.now();
-        self.bundles.push(Bundle { sort, entity, ranges: std::array::from_fn(|k| (from[k], to[k])) });
+        self.bundles.push(Bundle { sort, entity, model: None, ranges: std::array::from_fn(|k| (from[k], to[k])) });
     }
 
     /// Control points and pieces of borders: what a copy costs.
@@ -114,8 +116,17 @@ impl<'f> Step<'f> {
             b"MANIFOLD_SOLID_BREP" | b"FACETED_BREP" | b"BREP_WITH_VOIDS" => self.solid(k, item),
             _ if file.under(k, b"MANIFOLD_SOLID_BREP").is_some() => self.solid(k, item),
             b"SHELL_BASED_SURFACE_MODEL" | b"FACE_BASED_SURFACE_MODEL" => {
+                let before = item.bundles.len();
                 for shell in self.members(k, row.list(1)?) {
                     self.shell(shell, item, BundleKind::Shell);
+                }
+                match &mut item.bundles[before..] {
+                    [one] => one.model = Some(k),
+                    several => {
+                        if several.len() > 1 && !row.text(0).trim().is_empty() {
+                            item.bundle(BundleKind::Set, k, from);
+                        }
+                    }
                 }
                 Ok(())
             }

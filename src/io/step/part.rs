@@ -64,6 +64,11 @@ fn given(name: String) -> Option<String> {
     (!name.is_empty() && name != "NONE").then(|| name.to_owned())
 }
 
+/// The name that an entity has of its own.
+fn name(file: &File, entity: u32) -> Option<String> {
+    given(file.under(entity, b"REPRESENTATION_ITEM").unwrap_or(file.parameters(entity)).text(0))
+}
+
 impl StepPartBuilder<'_> {
     fn run(mut self, assembly: &Assembly) -> Part {
         let mut unread = Unread::new();
@@ -165,11 +170,13 @@ impl StepPartBuilder<'_> {
 
     /// Puts a solid, shell or set into its lists.
     fn bundle(&mut self, bundle: &Bundle, mut group: Group, solid: &mut String, place: usize, instance: &Instance, alone: bool) {
-        let own = given(self.step.file.parameters(bundle.entity).text(0));
+        let own = name(self.step.file, bundle.entity).or_else(|| name(self.step.file, bundle.model?));
         let all = [PartPlace::Point as fn(usize) -> PartPlace, PartPlace::Curve, PartPlace::Surface];
         let members = [&group.points, &group.curves, &group.surfaces];
         let members: Vec<PartPlace> = all.iter().zip(members).flat_map(|(kind, list)| list.iter().map(|k| kind(*k))).collect();
-        self.made.entry(bundle.entity).or_default().extend(members);
+        for entity in std::iter::once(bundle.entity).chain(bundle.model) {
+            self.made.entry(entity).or_default().extend(members.iter().copied());
+        }
         if bundle.sort == BundleKind::Skin {
             group.name = own.clone().unwrap_or_else(|| solid.clone());
             group.own = own;
@@ -204,7 +211,7 @@ impl StepPartBuilder<'_> {
     fn named<T>(&mut self, entity: u32, word: &str, before: usize, color: Option<Color>, at: PartPlace, value: T) -> Imported<T> {
         self.made.entry(entity).or_default().push(at);
         let file = self.step.file;
-        let own = given(file.parameters(entity).text(0));
+        let own = name(file, entity);
         let wanted = own.clone().unwrap_or_else(|| format!("{word}{}", before + 1));
         if let Some((rgb, name)) = &color {
             self.shades.group(&mut self.part.colors, *rgb, name).put(at);
