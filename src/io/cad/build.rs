@@ -154,7 +154,7 @@ impl Face {
             bounded().or_else(|why| trimmed().map_err(|_| why))
         };
         let (made, doubts) = made?;
-        Ok((made.into_iter().map(|surface| self.turned(surface)).collect(), doubts))
+        Ok((made.into_iter().map(|surface| self.turned(surface).with_borders_off(self.off.distance)).collect(), doubts))
     }
 
     /// Whether the surface below has neither seams nor poles.

@@ -16,10 +16,13 @@ pub(crate) struct Trim {
     pub trim_curves: Vec<TrimCurve>,
     /// Corners of a box in (u, v) that holds the loops; where a surface closes they may lie whole turns away.
     pub reach: (DVec2, DVec2),
+    /// How far the curves that were to be its borders are from the surface, at the least, model units: where one runs beside a border of
+    /// the surface below, that one stands for it.
+    pub off: f64,
 }
 
 // Where it lies in (u, v) follows from the borders and the surface below.
-crate::content!(Trim { loops } but { ground, trim_curves, reach });
+crate::content!(Trim { loops, off } but { ground, trim_curves, reach });
 
 /// A box in (u, v) that holds some trim curves: between two places a curve is nowhere farther from its chord than the chord is long.
 pub(crate) fn reach(trim_curves: &[TrimCurve]) -> (DVec2, DVec2) {

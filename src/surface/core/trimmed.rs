@@ -1,9 +1,12 @@
 //! Trimmed surfaces as they are: loops, lines and places of their borders, the surface below.
 
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3};
 
 use crate::surface::core::shape::Shape;
 use crate::surface::core::surface::{Parts, Surface};
+use crate::surface::core::trim::Trim;
 use crate::surface::data::kind::{Domain, SurfaceKind};
 use crate::surface::rails::side::{Border, Side};
 use crate::surface::rails::trim_curve::TrimCurve;
@@ -61,6 +64,13 @@ impl Surface {
         }
     }
 
+    /// The same, whose borders were made of curves that are as far from it at the least, model units; others than trimmed ones stay as they are.
+    pub fn with_borders_off(self, off: f64) -> Self {
+        let Some(trim) = &self.parts().trim else { return self };
+        let trim = Some(Arc::new(Trim { off, ..(**trim).clone() }));
+        Self::new(Parts { trim, ..self.parts().clone() })
+    }
+
     /// How far the borders of a trimmed surface are from it and the end of each from the start of the next one, at most, model
     /// units; 0 for others. Along a border it is measured where it was followed.
     pub fn gap(&self) -> f64 {
@@ -70,7 +80,7 @@ impl Surface {
             Side::Chain { chain, to, .. } => Some(chain.point(to)),
             _ => self.border_line(k).map(|(_, b)| self.point(b.0, b.1)),
         };
-        let (mut widest, mut first) = (off, 0);
+        let (mut widest, mut first) = (off.max(trim.off), 0);
         for n in &trim.loops {
             for k in 0..*n {
                 if let (Some(a), Some(b)) = (end(first + k), self.border_start(first + (k + 1) % n)) {

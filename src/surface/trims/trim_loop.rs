@@ -91,7 +91,7 @@ fn area2(polygon: &[DVec2]) -> f64 {
 pub(crate) fn assembled(base: &Surface, trim_loops: Vec<TrimLoop>, origin: Origin) -> Result<Surface> {
     let mut parts = Parts { origin, kind: SurfaceKind::Trim, domain: Domain::Loop, ..base.parts().clone() };
     (parts.borders, parts.chains) = (Vec::new(), Vec::new());
-    let mut trim = Trim { ground: base.ground(), loops: Vec::new(), trim_curves: Vec::new(), reach: (DVec2::ZERO, DVec2::ONE) };
+    let mut trim = Trim { ground: base.ground(), loops: Vec::new(), trim_curves: Vec::new(), reach: (DVec2::ZERO, DVec2::ONE), off: 0.0 };
     for (k, trim_loop) in trim_loops.into_iter().enumerate() {
         // Outer loops run counter-clockwise in (u, v), the others clockwise.
         let ascending = area2(&trim_loop.polygon()) > 0.0;
