@@ -1,11 +1,14 @@
 //! The line in which two patches meet as a curve: cubics within a quarter of the tolerance, a straight one as a line.
+//!
+//! No cubics go through two places in a row of a march where it took a step too long: past a tip, or over to another line near by. Then the
+//! march is repeated with shorter steps there.
 
 use glam::{DVec2, DVec3};
 
-use crate::base::fault::{Fault, Result};
+use crate::base::job;
 use crate::base::tolerance::NUDGE;
 use crate::geometry::Nurbs;
-use crate::surface::intersect::march::Branch;
+use crate::surface::intersect::march::{Narrow, Strides};
 use crate::surface::intersect::pair::{Pair, Spot};
 use crate::surface::trims::project::{self, cubics};
 
@@ -13,23 +16,57 @@ use crate::surface::trims::project::{self, cubics};
 pub(super) const SHARE: f64 = 0.25;
 /// Places nearer to each other than so many tolerances are one: a march may end just beyond one.
 const SHORTEST: f64 = 4.0;
+/// How often a march is repeated, and how much shorter its steps are where it failed the time before.
+const ROUNDS: usize = 8;
+const SHORTER: f64 = 0.25;
+
+/// A line in which two patches meet.
+#[derive(Clone, Debug)]
+pub(crate) struct Branch {
+    /// Places in a row.
+    pub spots: Vec<Spot>,
+    /// The curve through them; none where it is as short as a place.
+    pub cubics: Vec<Nurbs>,
+}
 
 impl Pair<'_> {
-    /// Cubics over the places of a branch, one parameter from each to the next.
+    /// The whole line through a place; the place where it was lost when it was. `size`: of the smaller patch.
+    pub fn line_through(&self, start: Spot, size: f64) -> Result<Branch, DVec3> {
+        let mut strides = Strides::default();
+        for _ in 0..ROUNDS {
+            job::poll();
+            let spots = self.march(start, size, &strides)?;
+            match self.fitted(&spots) {
+                Ok(cubics) => return Ok(Branch { spots, cubics }),
+                Err(failed) => {
+                    let steps = failed.iter().map(|(from, to)| Narrow::between(*from, *to, SHORTER));
+                    strides.narrow.extend(steps);
+                    let at = failed[0].0;
+                    if strides.narrow.iter().any(|narrow| narrow.step <= self.point) {
+                        return Err(at);
+                    }
+                }
+            }
+        }
+        Err(start.p)
+    }
+
+    /// Cubics over the places of a line, one parameter from each to the next; the neighbours between which there are none.
     ///
     /// Between two places the curve is run over by the planes across their chord, so every point of it is found on both
     /// surfaces by Newton's method.
-    pub fn fitted(&self, branch: &Branch, lost: &dyn Fn(DVec3) -> Fault) -> Result<Vec<Nurbs>> {
-        let spots = distinct(&branch.spots, SHORTEST * self.point);
-        if spots.len() < 2 {
-            return Ok(Vec::new());
+    fn fitted(&self, spots: &[Spot]) -> Result<Vec<Nurbs>, Vec<(DVec3, DVec3)>> {
+        let spots = distinct(spots, SHORTEST * self.point);
+        let (mut pieces, mut failed) = (Vec::new(), Vec::new());
+        for (k, w) in spots.windows(2).enumerate() {
+            let start = k as f64;
+            let land = |f: f64, _: Option<DVec2>, _: bool| self.between(&w[0], &w[1], f - start).ok_or(());
+            match cubics(&[start, start + 1.0], SHARE * self.point, land, |_| ()) {
+                Ok(some) => pieces.extend(some),
+                Err(()) => failed.push((w[0].p, w[1].p)),
+            }
         }
-        let stops: Vec<f64> = (0..spots.len()).map(|k| k as f64).collect();
-        let land = |f: f64, _: Option<DVec2>, before: bool| {
-            let k = if before { f.ceil() as usize } else { f.floor() as usize + 1 }.clamp(1, spots.len() - 1);
-            self.between(&spots[k - 1], &spots[k], f - (k - 1) as f64).ok_or_else(|| lost(spots[k].p))
-        };
-        cubics(&stops, SHARE * self.point, land, lost)
+        if failed.is_empty() { Ok(pieces) } else { Err(failed) }
     }
 
     /// The common place a share of the way from one to the next.

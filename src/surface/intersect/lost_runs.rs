@@ -6,7 +6,7 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::base::fault::{Fault, Result};
+use crate::base::fault::Result;
 use crate::base::job;
 use crate::base::origin::Origin;
 use crate::base::tolerance::{TOLD_APART, Tolerance};
@@ -23,13 +23,7 @@ use crate::surface::intersect::with_surfaces::{curve, lies_on};
 const ROUNDS: usize = 16;
 
 /// Adds the runs that go on from free ends of some curves.
-pub(super) fn with_lost_runs(
-    mut curves: Vec<Curve>,
-    sheets: [&[Sheet]; 2],
-    origin: Origin,
-    tolerance: &Tolerance,
-    lost: &dyn Fn(DVec3) -> Fault,
-) -> Result<Vec<Curve>> {
+pub(super) fn with_lost_runs(mut curves: Vec<Curve>, sheets: [&[Sheet]; 2], origin: Origin, tolerance: &Tolerance) -> Result<Vec<Curve>> {
     let bordered = |sheets: &[Sheet]| sheets.len() > 1 || sheets.first().is_some_and(|s| s.patch.surface.closed() != (false, false));
     if !sheets.iter().any(|sheets| bordered(sheets)) {
         return Ok(curves);
@@ -41,7 +35,7 @@ pub(super) fn with_lost_runs(
         let free = rows.iter().filter(|c| !closed(c)).flat_map(|c| [c.start(), c.end()]);
         let before = curves.len();
         for at in free {
-            for run in from(at, sheets, origin, tolerance, lost)? {
+            for run in from(at, sheets, origin, tolerance)? {
                 if !curves.iter().any(|known| lies_on(&run, &Chain::of_curve(known), tolerance)) {
                     curves.push(run);
                 }
@@ -55,7 +49,7 @@ pub(super) fn with_lost_runs(
 }
 
 /// The lines through a place in all pairs of patches that have it.
-fn from(at: DVec3, sheets: [&[Sheet]; 2], origin: Origin, tolerance: &Tolerance, lost: &dyn Fn(DVec3) -> Fault) -> Result<Vec<Curve>> {
+fn from(at: DVec3, sheets: [&[Sheet]; 2], origin: Origin, tolerance: &Tolerance) -> Result<Vec<Curve>> {
     let mut found = Vec::new();
     let beside = sheets.map(|sheets| places(at, sheets, tolerance));
     for (x, a) in &beside[0] {
@@ -64,9 +58,8 @@ fn from(at: DVec3, sheets: [&[Sheet]; 2], origin: Origin, tolerance: &Tolerance,
             let size = x.bounds().diagonal().min(y.bounds().diagonal());
             let spot = pair.correct(*a, *b, None).filter(|spot| spot.p.distance(at) <= TOLD_APART * tolerance.point);
             // Where no run can be followed the end stays free.
-            let Some(Ok(branch)) = spot.map(|spot| pair.march(spot, size)) else { continue };
-            let Ok(cubics) = pair.fitted(&branch, lost) else { continue };
-            found.extend(curve(&cubics, origin, tolerance)?);
+            let Some(Ok(branch)) = spot.map(|spot| pair.line_through(spot, size)) else { continue };
+            found.extend(curve(&branch.cubics, origin, tolerance)?);
         }
     }
     Ok(found)

@@ -4,6 +4,7 @@ use glam::{DVec2, DVec3};
 
 use crate::base::job;
 use crate::base::tolerance::{EPSILON, NUDGE, TOLD_APART};
+use crate::surface::intersect::fit_branch::Branch;
 use crate::surface::intersect::pair::{Pair, Spot};
 use crate::surface::intersect::sheet::{BorderLine, Patch};
 
@@ -29,35 +30,60 @@ const MARCH: Marching = Marching {
     unlike_ratio: 4.0,
 };
 
-/// A line in which two patches meet: places in a row.
-#[derive(Clone, Debug)]
-pub(crate) struct Branch {
-    pub spots: Vec<Spot>,
+/// Where a march takes shorter steps than elsewhere.
+#[derive(Debug, Default)]
+pub(crate) struct Strides {
+    pub narrow: Vec<Narrow>,
+}
+
+/// A ball in which steps are short.
+#[derive(Debug)]
+pub(crate) struct Narrow {
+    at: DVec3,
+    reach: f64,
+    pub step: f64,
+}
+
+impl Narrow {
+    /// About two places, with steps that are a share of their distance.
+    pub fn between(from: DVec3, to: DVec3, share: f64) -> Self {
+        let reach = from.distance(to);
+        Self { at: from.midpoint(to), reach, step: share * reach }
+    }
+}
+
+impl Strides {
+    /// The longest step from a place: none leads into a ball by more than a step of that ball.
+    fn longest(&self, from: DVec3) -> f64 {
+        let one = |narrow: &Narrow| narrow.step.max(narrow.at.distance(from) - narrow.reach);
+        self.narrow.iter().map(one).fold(f64::INFINITY, f64::min)
+    }
 }
 
 impl Pair<'_> {
-    /// The whole line through a place; the place where the march failed when it did.
-    pub fn march(&self, start: Spot, size: f64) -> Result<Branch, DVec3> {
-        let (mut spots, closed) = self.run(start, size)?;
+    /// Places in a row on the whole line through a place; where the march failed when it did.
+    pub fn march(&self, start: Spot, size: f64, strides: &Strides) -> Result<Vec<Spot>, DVec3> {
+        let (mut spots, closed) = self.run(start, size, strides)?;
         if closed {
-            return Ok(Branch { spots });
+            return Ok(spots);
         }
         let back = Spot { way: -start.way, ..start };
-        let (behind, _) = self.run(back, size)?;
+        let (behind, _) = self.run(back, size, strides)?;
         let turned = behind.into_iter().skip(1).map(|s| Spot { way: -s.way, ..s });
         let mut all: Vec<Spot> = turned.collect();
         all.reverse();
         all.append(&mut spots);
-        Ok(Branch { spots: all })
+        Ok(all)
     }
 
     /// Goes one way; whether it came back to the start.
-    fn run(&self, start: Spot, size: f64) -> Result<(Vec<Spot>, bool), DVec3> {
+    fn run(&self, start: Spot, size: f64, strides: &Strides) -> Result<(Vec<Spot>, bool), DVec3> {
         let mut spots = vec![start];
         let mut h = MARCH.first_step_share * size;
         while spots.len() < MARCH.max_places {
             job::poll();
             let here = spots[spots.len() - 1];
+            h = h.min(strides.longest(here.p));
             if h < NUDGE * NUDGE * size {
                 return Err(here.p);
             }
@@ -79,6 +105,7 @@ impl Pair<'_> {
                         }
                         return Ok((spots, false));
                     }
+                    _ if self.is_at(first, line, &here) => return Ok((spots, false)),
                     _ => {
                         h *= 0.5;
                         continue;

@@ -119,6 +119,12 @@ impl Pair<'_> {
         self.spot(a, b)
     }
 
+    /// Whether a place is on a border but for what may part the two points of a place: a line that leaves there over a pole has no other end.
+    pub fn is_at(&self, first: bool, line: BorderLine, spot: &Spot) -> bool {
+        let (own, uv) = if first { (self.a, spot.a) } else { (self.b, spot.b) };
+        own.jet(own.hold(line.onto(uv))).p.distance(spot.p) <= EXACT * self.point
+    }
+
     /// Where a step along a direction leads in both domains, to first order; `None` where a patch is singular.
     pub fn ahead(&self, at: &Spot, step: DVec3) -> Option<(DVec2, DVec2)> {
         let (s, t) = self.jets(at.a, at.b);

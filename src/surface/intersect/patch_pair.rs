@@ -12,8 +12,8 @@ use crate::base::bbox::Box3;
 use crate::base::job;
 use crate::base::tolerance::TOLD_APART;
 use crate::surface::closest::foot::FootSearch;
+use crate::surface::intersect::fit_branch::Branch;
 use crate::surface::intersect::known_curves::KnownCurve;
-use crate::surface::intersect::march::Branch;
 use crate::surface::intersect::pair::{Pair, Spot};
 use crate::surface::intersect::sheet::{Cell, Sheet};
 
@@ -113,7 +113,8 @@ impl PairSearch<'_> {
         // Flat cells that part by no more than a few tolerances run along each other.
         let slow = fine && x.normal.cross(y.normal).length() * x.reach().min(y.reach()) <= SEARCH.divergence_tolerances * self.point;
         if !slow && crosses(x, y) {
-            if apart(x, y, SEARCH.exact_share * self.point) || self.known.iter().any(|known| known.passes(x, y)) {
+            let exact = SEARCH.exact_share * self.point;
+            if apart(x, y, exact) || beside(x, y, exact) || self.known.iter().any(|known| known.passes(x, y)) {
                 return Ok(());
             }
             // What is lost beside a known line ends at a border.
@@ -162,7 +163,7 @@ impl PairSearch<'_> {
             return Ok(true);
         }
         if !self.common.branches.iter().any(|branch| pair.passes(branch, &spot)) {
-            match pair.march(spot, self.size) {
+            match pair.line_through(spot, self.size) {
                 Ok(branch) => self.common.branches.push(branch),
                 Err(at) if known && self.ends_at(at) => {}
                 Err(at) => return Err(Stopped::Lost(at)),
@@ -240,6 +241,16 @@ pub(crate) fn apart(x: &Cell, y: &Cell, point: f64) -> bool {
     [x.normal, y.normal].into_iter().any(|n| {
         let (r, s) = (x.along(n), y.along(n));
         n != DVec3::ZERO && (r.low > s.high + point || s.low > r.high + point)
+    })
+}
+
+/// Whether two cells that cross as planes end before they meet: they are apart across a side of each. Of two flat parallelograms these
+/// directions and both normals are all that can part them.
+fn beside(x: &Cell, y: &Cell, point: f64) -> bool {
+    let sides = |cell: &Cell| [cell.enclosure.mid.du, cell.enclosure.mid.dv];
+    sides(x).into_iter().flat_map(|e| sides(y).map(|f| e.cross(f).normalize_or_zero())).any(|n| {
+        let (r, s) = (x.along(n), y.along(n));
+        r.low > s.high + point || s.low > r.high + point
     })
 }
 

@@ -22,7 +22,6 @@ use crate::surface::intersect::extrusions::flat_and_extruded;
 use crate::surface::intersect::join_curves::{self, STRAIGHT};
 use crate::surface::intersect::known_curves::KnownCurve;
 use crate::surface::intersect::lost_runs::with_lost_runs;
-use crate::surface::intersect::pair::Pair;
 use crate::surface::intersect::patch_pair::{Stopped, common};
 use crate::surface::intersect::planes::flat_faces;
 use crate::surface::intersect::revolved::flat_and_revolved;
@@ -134,11 +133,9 @@ fn searched([a, b]: [&Surface; 2], [box_a, box_b]: [Box3; 2], origin: Origin, to
                 Stopped::Along(at) => along(at),
                 Stopped::Lost(at) => lost(at),
             })?;
-            let pair = Pair { a: &x.patch, b: &y.patch, point: tolerance.point };
             let mut own = Vec::new();
             for branch in &found.branches {
-                let cubics = pair.fitted(branch, &lost)?;
-                own.extend(curve(&cubics, origin, tolerance)?);
+                own.extend(curve(&branch.cubics, origin, tolerance)?);
             }
             // Beside a known curve a march finds that one again, within the tolerance only.
             own.retain(|curve| !known_curves.iter().any(|known| lies_on(curve, &known.chain, tolerance)));
@@ -165,7 +162,7 @@ fn searched([a, b]: [&Surface; 2], [box_a, box_b]: [Box3; 2], origin: Origin, to
             curves.extend(own);
         }
     }
-    Ok((with_lost_runs(curves, [&sheets_a, &sheets_b], origin, tolerance, &lost)?, touches))
+    Ok((with_lost_runs(curves, [&sheets_a, &sheets_b], origin, tolerance)?, touches))
 }
 
 fn sheets(ground: &Surface) -> Vec<Sheet> {

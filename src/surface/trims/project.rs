@@ -79,12 +79,12 @@ pub(crate) struct Landing {
 ///
 /// `land` gives the place at a parameter, near a guess when there is one; with `true` as part of what ends there. `lost`
 /// is the fault when halving leads nowhere.
-pub(crate) fn cubics(
+pub(crate) fn cubics<E>(
     stops: &[f64],
     allowed: f64,
-    land: impl Fn(f64, Option<DVec2>, bool) -> Result<Landing>,
-    lost: impl Fn(DVec3) -> Fault,
-) -> Result<Vec<Nurbs>> {
+    land: impl Fn(f64, Option<DVec2>, bool) -> std::result::Result<Landing, E>,
+    lost: impl Fn(DVec3) -> E,
+) -> std::result::Result<Vec<Nurbs>, E> {
     let mut pieces: Vec<Nurbs> = Vec::new();
     let mut last: Option<DVec2> = None;
     for w in stops.windows(2) {
