@@ -64,7 +64,15 @@ impl Pcurve {
         let widest = Cell::new(0.0_f64);
         let land = |f: f64, guess: DVec2| -> Result<DVec2, OffSurface> {
             let p = chain.point(f);
-            let (uv, distance) = foot(surface.evaluator(), p, guess);
+            let (mut uv, mut distance) = foot(surface.evaluator(), p, guess);
+            if distance > near && !surface.is_flat() {
+                // On a crease the steps to a foot go by the derivatives of one side, and lead nowhere from the other.
+                let best = closest(&surface.untrimmed(), p);
+                let off = |place: &DVec2| (*place - guess).length();
+                if let Some(place) = surface.copies(best.uv).into_iter().min_by(|a, b| off(a).total_cmp(&off(b))) {
+                    (uv, distance) = (place, best.distance);
+                }
+            }
             if distance > near {
                 return Err(OffSurface { at: p, distance });
             }
