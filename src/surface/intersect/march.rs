@@ -4,6 +4,7 @@ use glam::{DVec2, DVec3};
 
 use crate::base::job;
 use crate::base::tolerance::{EPSILON, NUDGE, TOLD_APART};
+use crate::surface::closest::foot::FootSearch;
 use crate::surface::intersect::fit_branch::Branch;
 use crate::surface::intersect::pair::{Pair, Spot};
 use crate::surface::intersect::sheet::{BorderLine, Patch};
@@ -88,7 +89,7 @@ impl Pair<'_> {
                 return Err(here.p);
             }
             let Some((a, b)) = self.ahead(&here, here.way * h) else { return self.stopped(spots, here) };
-            if let Some((share, first, line)) = self.leaves(&here, a, b) {
+            if let Some((share, first, line)) = self.leaves(&here, a, b).filter(|_| !self.stays(&here, h, (a, b))) {
                 if share <= EPSILON {
                     return Ok((spots, false));
                 }
@@ -113,6 +114,7 @@ impl Pair<'_> {
                 }
             }
             let target = here.p + here.way * h;
+            let (a, b) = (self.a.hold(a), self.b.hold(b));
             let next = self.correct(a, b, Some((target, here.way))).map(|next| self.aligned(&here, next));
             match next {
                 Some(next) if fits(&here, &next, h) && next.way.dot(here.way) >= MARCH.turn_cosines.0 => {
@@ -129,6 +131,13 @@ impl Pair<'_> {
             }
         }
         Err(spots[spots.len() - 1].p)
+    }
+
+    /// Whether a line that seems to leave a patch at the end of a step does not: it bends back before it comes to the border, or touches that.
+    fn stays(&self, here: &Spot, h: f64, (a, b): (DVec2, DVec2)) -> bool {
+        let target = here.p + here.way * h;
+        let next = self.correct(self.a.hold(a), self.b.hold(b), Some((target, here.way))).map(|next| self.aligned(here, next));
+        next.is_some_and(|next| fits(here, &next, h) && self.is_in(&next) && next.way.dot(here.way) >= MARCH.turn_cosines.0)
     }
 
     /// Whether the line turns by no more than a step may on its way to a place, or is too short to tell.
