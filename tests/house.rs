@@ -103,15 +103,15 @@ const OUTSIDE: &[&str] = &["std::fs", "std::env", "std::time", "println!", "epri
 /// Lines a floor may have, tests included; a higher number is a change of its own, with the reason.
 const CEILINGS: &[(&str, usize)] = &[
     ("base", 5_000),
-    ("geometry", 6_700),
+    ("geometry", 7_200),
     ("network", 5_150),
-    ("surface", 36_500),
+    ("surface", 37_000),
     ("model", 7_400),
     ("mesh", 35_100),
     ("hydrostatics", 2_300),
     ("io", 19_900),
     ("draw", 4_400),
-    ("lang", 33_900),
+    ("lang", 34_200),
     ("session", 14_300),
     ("cli", 8_100),
     ("library", 2_000),
