@@ -17,6 +17,7 @@ mod draw;
 mod drawings;
 mod edges;
 mod edits;
+mod extensions;
 mod fairing;
 mod fmt;
 mod fmt_cli;

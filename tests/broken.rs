@@ -200,8 +200,8 @@ fn check_page(code: &str, path: &Path, page: &str, accept: bool) -> Result<(), S
 /// Codes whose page offers something to type.
 const FIXED: &[&str] = &[
     "E101", "E102", "E103", "E104", "E105", "E106", "E107", "E108", "E201", "E202", "E212", "E214", "E219", "W220", "E221", "E303", "E305",
-    "E403", "E405", "E407", "E412", "E414", "E415", "E501", "E502", "E508", "W514", "E621", "E623", "E655", "E663", "W701", "E702", "E703",
-    "E704", "W706", "E801", "E805",
+    "E403", "E405", "E407", "E412", "E414", "E415", "E418", "E501", "E502", "E508", "W514", "E621", "E623", "E655", "E663", "W701", "E702",
+    "E703", "E704", "W706", "E801", "E805",
 ];
 
 /// What is offered on a page is typed, and then the report is gone and no error is new.
@@ -244,6 +244,8 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("E301", "`"),
     ("E302", "`"),
     // What is to be chosen.
+    ("E417", "take a part of it"),
+    ("E417", "cut a little off before"),
     ("E509", "`meet(a, b)` lists"),
     ("E603", "take the run with one of the two meetings"),
     ("E622", "leave that stretch out"),
@@ -252,6 +254,7 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("E636", "take the runs before and after it"),
     ("E641", "draw both through one point"),
     ("E658", "bound one of them"),
+    ("E659", "a curve divides a surface when"),
     ("E666", "trim one of them by the border of the other"),
     ("E666", "`mesh "),
     ("E502", "both are closed: `outer:"),

@@ -37,6 +37,7 @@ pub mod swept;
 pub mod trims;
 
 pub use crate::surface::analysis::as_net::{NetForm, Off};
+pub use crate::surface::analysis::extend::{Rim, extend};
 pub use crate::surface::analysis::iso_line::IsoLine;
 pub use crate::surface::blended::ruled::{ruled, ruled_as_drawn};
 pub use crate::surface::closest::bounding_box::{bbox, boxed};

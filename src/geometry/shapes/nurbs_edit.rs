@@ -33,6 +33,27 @@ impl Bezier {
         }
         (Self { t0: self.t0, t1: middle, poles: left }, Self { t0: middle, t1: self.t1, poles: right })
     }
+
+    /// Rows over one parameter, halved together until all weights are above 0: parts one after the other, each with all rows; `None` where a
+    /// weight vanishes on the way.
+    pub fn with_weights(rows: Vec<Self>) -> Option<Vec<Vec<Self>>> {
+        /// Halvings at most.
+        const DEPTH: usize = 24;
+        let mut open = vec![(rows, 0)];
+        let mut parts = Vec::new();
+        while let Some((rows, depth)) = open.pop() {
+            let ends = |row: &Self| row.poles[0].w > 0.0 && row.poles[row.poles.len() - 1].w > 0.0;
+            if rows.iter().all(|row| row.poles.iter().all(|q| q.w > 0.0)) {
+                parts.push(rows);
+            } else if depth == DEPTH || !rows.iter().all(ends) {
+                return None;
+            } else {
+                let (left, right): (Vec<Self>, Vec<Self>) = rows.iter().map(Self::halves).unzip();
+                open.extend([(right, depth + 1), (left, depth + 1)]);
+            }
+        }
+        Some(parts)
+    }
 }
 
 impl Nurbs {
@@ -96,6 +117,18 @@ impl Nurbs {
             }
         }
         pieces
+    }
+
+    /// The Bézier points of the last polynomial piece where it goes on for `more` of the parameter; their weights may be of any sign.
+    pub fn onward(&self, more: f64) -> Bezier {
+        let (p, t0) = (self.degree, self.domain().1);
+        let (k, t1) = (self.span(t0), t0 + more);
+        let pole = |j: usize| {
+            let mut arguments = [t0; MAX_DEGREE];
+            arguments[p - j..p].fill(t1);
+            self.blossom(k, &arguments[..p])
+        };
+        Bezier { t0, t1, poles: (0..=p).map(pole).collect() }
     }
 
     /// The same curve with its degree raised by `by`, to at most 25.

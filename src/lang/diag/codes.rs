@@ -100,6 +100,8 @@ codes! {
     now "E414", "corner-too-narrow", "a rounding or cut does not fit a corner";
     now "E415", "no-corner", "a curve has no corner there";
     now "E416", "corner-not-flat", "the sides of a corner do not lie in a plane";
+    now "E417", "no-end-to-extend", "a curve or surface has no end that could be extended";
+    now "E418", "extended-too-far", "a curve or surface does not go on that far";
     now "E501", "ends-miss", "two ends miss each other";
     now "E502", "boundary-open", "a boundary or loop does not close";
     now "E503", "chain-broken", "links of a chain do not join";

@@ -2,6 +2,8 @@
 
 pub mod as_net;
 pub mod elementary;
+pub mod extend;
+pub mod extend_net;
 pub mod fairness;
 pub mod iso;
 pub mod iso_fit;

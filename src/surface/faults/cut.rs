@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::base::fault::quantities::tolerance_note;
+use crate::base::fault::quantities::{tolerance_note, typed};
 use crate::base::fault::{Describe, Report, Say, codes};
 use crate::base::origin::Origin;
 
@@ -19,6 +19,8 @@ pub enum CutFault {
         ends: Vec<DVec3>,
         /// All of it lies beyond the border of the surface.
         outside: bool,
+        /// Lengths by which lines along its tangents at its ends reach the border, with the words of the ends; none where the surface is curved.
+        reach: Vec<(&'static str, f64)>,
     },
     /// E721 `cuts-too-near`: a cut without ends leaves one part, where every such cut divides: it was not followed all the way.
     NothingParted {
@@ -86,7 +88,7 @@ impl Describe for CutFault {
 
     fn describe(&self, say: &dyn Say) -> Report {
         match self {
-            Self::CutOpen { cutter, surface, ends, outside } => {
+            Self::CutOpen { cutter, surface, ends, outside, reach } => {
                 let places = say.points(ends);
                 let why = match ends.len() {
                     _ if *outside => "it lies outside the border".to_owned(),
@@ -98,7 +100,7 @@ impl Describe for CutFault {
                 Report::new(format!("{which} does not divide {whole}: {why}"))
                     .at(*cutter, if ends.is_empty() { "divides nothing" } else { "ends inside" })
                     .at(*surface, "this surface")
-                    .help("a curve divides a surface when it runs from border to border, or closes, alone or with others")
+                    .help(longer(&which, reach, say))
             }
             Self::NothingParted { surface, at, tolerance } => {
                 let (name, at) = (say.quoted(*surface, "the surface"), say.point(*at));
@@ -148,6 +150,16 @@ impl Describe for CutFault {
             }
         }
     }
+}
+
+/// What makes a curve divide a surface.
+fn longer(curve: &str, reach: &[(&str, f64)], say: &dyn Say) -> String {
+    let rule = "a curve divides a surface when it runs from border to border, or closes, alone or with others";
+    let Some(name) = curve.strip_prefix('`').and_then(|name| name.strip_suffix('`')).filter(|_| !reach.is_empty()) else {
+        return rule.to_owned();
+    };
+    let one = |name: String, (side, by): &(&str, f64)| format!("extend({name}, side: {side}, by: {}, how: linear)", typed(say, *by));
+    format!("{rule}; `{}` reaches the border", reach.iter().fold(name.to_owned(), one))
 }
 
 /// How near points of cuts are one.

@@ -6,15 +6,18 @@ use glam::{DVec2, DVec3};
 
 use crate::base::bbox::Box3;
 use crate::base::fault::Result;
+use crate::base::fault::quantities::round_up;
 use crate::base::job;
+use crate::base::math;
 use crate::base::origin::Origin;
 use crate::base::tolerance::{NUDGE, TOLD_APART, Tolerance};
 use crate::network::Chain;
 use crate::surface::closest::foot;
 use crate::surface::closest::nearest::closest;
 use crate::surface::core::plane;
+use crate::surface::core::shape::Shape;
 use crate::surface::core::surface::Surface;
-use crate::surface::data::kind::Domain;
+use crate::surface::data::kind::{Domain, SurfaceKind};
 use crate::surface::faults::CutFault;
 use crate::surface::rails::side::{Border, Side};
 use crate::surface::rails::trim_curve::TrimCurve;
@@ -200,12 +203,31 @@ fn arranged(base: &Surface, cutters: &[Chain], meets: Meets, tolerance: &Toleran
             let loops = natural(base, tolerance)?;
             ends.retain(|p| within(base, &loops, *p).is_some());
         }
-        idle = Some(CutFault::CutOpen { cutter: cutter.origin(), surface: base.origin(), ends, outside });
+        let reach = reaching(base, cutter, &ends, tolerance);
+        idle = Some(CutFault::CutOpen { cutter: cutter.origin(), surface: base.origin(), ends, outside, reach });
         break;
     }
     let kept = || (0..all.len()).filter(|i| stays[*i]);
     let (pieces, edges) = kept().map(|i| (all[i].clone(), edges[i].clone())).unzip();
     Ok((Dividing { pieces, edges }, idle))
+}
+
+/// By how much a curve on a plane is to be longer, straight on at the ends that lie inside, to leave the box of the plane: rounded up.
+fn reaching(base: &Surface, cutter: &Chain, inside: &[DVec3], tolerance: &Tolerance) -> Vec<(&'static str, f64)> {
+    let flat = matches!(base.parts().shape, Shape::Plane(_)) || base.kind() == SurfaceKind::Plane;
+    if !flat || base.domain() == Domain::Unbounded {
+        return Vec::new();
+    }
+    let (room, mut reach) = (base.hull(), Vec::new());
+    for (side, p, way) in [("start", cutter.start(), -cutter.jet(0.0).d1), ("end", cutter.end(), cutter.jet_before(1.0).d1)] {
+        let Some(way) = math::unit(way, 0.0).filter(|_| inside.iter().any(|q| tolerance.same_point(p, *q))) else { continue };
+        let out = |axis: usize| (if way[axis] > 0.0 { room.max[axis] } else { room.min[axis] } - p[axis]) / way[axis];
+        let most = (0..3).filter(|axis| way[*axis].abs() > NUDGE).map(out).fold(f64::INFINITY, f64::min);
+        if most > tolerance.point && most.is_finite() {
+            reach.push((side, round_up(most)));
+        }
+    }
+    reach
 }
 
 /// The foot of the point to keep.

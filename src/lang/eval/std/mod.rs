@@ -11,6 +11,7 @@ pub mod data;
 pub mod distances;
 pub mod drawings;
 pub mod elementary;
+pub mod extensions;
 pub mod fairs;
 pub mod fills;
 pub mod fits;
@@ -134,6 +135,7 @@ pub const BUILTINS: &[&[Builtin]] = &[
     hydrostatics::BUILTINS,
     stability::BUILTINS,
     roundings::BUILTINS,
+    extensions::BUILTINS,
     network::BUILTINS,
     curve_nets::BUILTINS,
     surfaces::BUILTINS,

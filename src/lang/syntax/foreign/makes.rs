@@ -80,6 +80,7 @@ const OTHERS: &[&str] = &[
     "error",
     "even_points",
     "exp",
+    "extend",
     "fair",
     "fairness",
     "fill",
