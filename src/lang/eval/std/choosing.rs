@@ -13,9 +13,11 @@ use crate::base::tolerance::Tolerance;
 use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
 use crate::lang::eval::scene::Scene;
-use crate::lang::eval::std::kinds::{Carrier, EdgeKey, EdgeOf};
+use crate::lang::eval::std::joins::apart;
+use crate::lang::eval::std::kinds::{Carrier, EdgeKey, EdgeOf, Faces};
+use crate::lang::eval::std::topology::{patches, skin_of};
 use crate::lang::values::value::Value;
-use crate::model::{SharedEdge, SharedTrack};
+use crate::model::{PatchId, SharedEdge, SharedTrack, SurfaceId};
 use crate::network::Chain;
 use crate::surface::core::plane::unbounded;
 use crate::surface::{Nearest, Surface, chain_breaks, curve_bbox};
@@ -163,4 +165,26 @@ pub fn lies(cx: &mut Cx, scene: &Scene, edge: &SharedEdge, key: &EdgeKey) -> Res
         EdgeKey::Curve(chain) => Geometry { scene, edge, track, tolerance }.lies_on(&Feet::Curve(chain.clone())),
         EdgeKey::Point(p) => Ok(track.distance(*p) <= tolerance.point.max(edge.near)),
     }
+}
+
+/// The edges at which a face of some surfaces meets a face of others, as all of them are glued; E618 where there are none, unless it is
+/// one list with itself.
+pub(crate) fn between(cx: &mut Cx, a: &Faces, b: &Faces) -> Result<Vec<EdgeOf>, Halt> {
+    let both = [a.surfaces(), b.surfaces()];
+    let snap = a.snap().into_iter().chain(b.snap()).reduce(f64::max);
+    let (all, _) = skin_of(cx, &both.concat(), snap)?;
+    let (home, model, _) = patches(cx, &both.concat())?;
+    let scene = Scene { network: cx.network_of(&home)?, model };
+    let mut own: [Vec<SurfaceId>; 2] = [Vec::new(), Vec::new()];
+    for (ids, surfaces) in own.iter_mut().zip(&both) {
+        *ids = scene.find_all(surfaces)?.into_iter().map(|place| place.0).collect();
+    }
+    let of = |face: &PatchId, side: usize| own[side].contains(&scene.model.patches[face.index()].surface);
+    // Two different faces of it, or both sides of a seam, one of each list.
+    let joins = |edge: &&EdgeOf| {
+        let faces = &edge.1.faces;
+        (0..faces.len()).any(|i| (0..faces.len()).any(|j| i != j && of(&faces[i], 0) && of(&faces[j], 1)))
+    };
+    let found: Vec<EdgeOf> = all.iter().filter(joins).cloned().collect();
+    if found.is_empty() && own[0] != own[1] { Err(apart(&scene, [&own[0], &own[1]])) } else { Ok(found) }
 }

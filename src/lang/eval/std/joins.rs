@@ -106,15 +106,20 @@ fn shared(scene: &Scene, a: &[Surface], b: Option<&[Surface]>, near: f64, tolera
             ours.contains(&one) && theirs.contains(&other) || ours.contains(&other) && theirs.contains(&one)
         }
     });
-    if let (true, Some(theirs)) = (contacts.is_empty(), theirs) {
-        let found = scene.model.apart(&ours, &theirs);
-        let origin = |id: SurfaceId| scene.model.surfaces[id.index()].surface.origin();
-        let (first, last) = found.map_or((ours.first().copied(), theirs.first().copied()), |f| (Some(f.surfaces.0), Some(f.surfaces.1)));
-        let (a, b) = (first.map(origin).unwrap_or_default(), last.map(origin).unwrap_or_default());
-        let (gap, at) = found.map_or((0.0, glam::DVec3::ZERO), |f| (f.gap, f.at));
-        return Err(ShellFault::NotAdjacent { a, b, gap, at, near: false, snap: None }.into());
+    match theirs {
+        Some(theirs) if contacts.is_empty() => Err(apart(scene, [&ours, &theirs])),
+        _ => Ok(contacts),
     }
-    Ok(contacts)
+}
+
+/// E618 with where the faces of two lists are nearest.
+pub(crate) fn apart(scene: &Scene, [ours, theirs]: [&[SurfaceId]; 2]) -> Halt {
+    let found = scene.model.apart(ours, theirs);
+    let origin = |id: SurfaceId| scene.model.surfaces[id.index()].surface.origin();
+    let (first, last) = found.map_or((ours.first().copied(), theirs.first().copied()), |f| (Some(f.surfaces.0), Some(f.surfaces.1)));
+    let (a, b) = (first.map(origin).unwrap_or_default(), last.map(origin).unwrap_or_default());
+    let (gap, at) = found.map_or((0.0, glam::DVec3::ZERO), |f| (f.gap, f.at));
+    ShellFault::NotAdjacent { a, b, gap, at, near: false, snap: None }.into()
 }
 
 /// A stretch as a record.

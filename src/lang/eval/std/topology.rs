@@ -54,11 +54,15 @@ pub(crate) fn loops(cx: &mut Cx, surfaces: &[Surface]) -> Result<Vec<Vec<EdgeOf>
 
 /// The edges of a shell, as values in the order of its skin, and the skin.
 pub(crate) fn skin(cx: &mut Cx, faces: &Faces) -> Result<(Vec<EdgeOf>, SharedEdges), Halt> {
-    let (surfaces, stated) = (faces.surfaces(), faces.snap());
-    let (home, model, _) = patches(cx, &surfaces)?;
+    skin_of(cx, &faces.surfaces(), faces.snap())
+}
+
+/// The edges of surfaces as they are glued over a stated distance, or as a shell glues them.
+pub(crate) fn skin_of(cx: &mut Cx, surfaces: &[Surface], stated: Option<f64>) -> Result<(Vec<EdgeOf>, SharedEdges), Halt> {
+    let (home, model, _) = patches(cx, surfaces)?;
     let (tolerance, network) = (cx.tolerance()?, cx.network_of(&home)?);
     let scene = Scene { model, network };
-    let places: Vec<SurfaceId> = scene.find_all(&surfaces)?.into_iter().map(|place| place.0).collect();
+    let places: Vec<SurfaceId> = scene.find_all(surfaces)?.into_iter().map(|place| place.0).collect();
     let near = scene.model.reach(places.iter().copied(), stated, &tolerance);
     let skin = scene.model.shared_edges(&places, near, &scene.network, &tolerance);
     Ok((skin.edges.iter().map(|edge| EdgeOf(home.clone(), Arc::new(edge.clone()))).collect(), skin))
@@ -221,6 +225,27 @@ builtins! {
         /// A curve it lies on, or a point of it.
         on: EdgeKey,
     ) -> EdgeOf = |cx, of, on| edge_of(cx, &of.0, &on);
+
+    /// The edges that faces of one list share with faces of another.
+    ///
+    /// All of them are glued as a shell would glue them, so a border that two faces share is one edge; of a corner that the two have in common there is none.
+    /// They are a list in the order of the faces of `a`, for groups, rules of meshes and checks; `edge_between(s, s)` are the inner edges and
+    /// seams of `s`, if it has some. Other faces that share no edge are E618.
+    /// ```loft
+    /// curve south = line((0, 0, 0), (4m, 0, 0))
+    /// surface wall = extrude(south, by: (0, 0, 3m))
+    /// surface slab = extrude(south, by: (0, 2m, 0))
+    /// let foot = edge_between(wall, slab)
+    /// check len(foot) == 1 and foot[0].length == 4m within 1e-9%
+    /// group joint of foot
+    /// mesh fine of wall, slab { size: 500mm  on foot { count: 10 } }
+    /// ```
+    fn edge_between(
+        /// A surface, a shell, or several.
+        a: Edged,
+        /// What it shares edges with.
+        b: Edged,
+    ) -> Vec<EdgeOf> = |cx, a, b| choosing::between(cx, &a.0, &b.0);
 
     /// Edges at which the faces of surfaces or shells turn by more than an angle.
     ///

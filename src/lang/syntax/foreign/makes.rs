@@ -76,6 +76,7 @@ const OTHERS: &[&str] = &[
     "distance",
     "dot",
     "edge",
+    "edge_between",
     "equilibrium",
     "error",
     "even_points",
