@@ -20,6 +20,7 @@ use crate::lang::values::value::Value;
 use crate::model::{PatchId, SharedEdge, SharedTrack, SurfaceId};
 use crate::network::Chain;
 use crate::surface::core::plane::unbounded;
+use crate::surface::intersect::with_curve::inside as within_faces;
 use crate::surface::{Nearest, Surface, chain_breaks, curve_bbox};
 
 /// Places of an edge that are looked at first.
@@ -150,6 +151,23 @@ pub fn on(cx: &mut Cx, edges: Vec<Value>, carrier: &Carrier) -> Result<Vec<EdgeO
 /// Edges all of which lies in a box, its border and the tolerance included.
 pub fn inside(cx: &mut Cx, edges: Vec<Value>, around: &Box3) -> Result<Vec<EdgeOf>, Halt> {
     chosen(cx, edges, |edge| edge.lies_inside(around))
+}
+
+/// The runs of curves that lie inside faces.
+pub fn runs_inside(cx: &mut Cx, curves: Vec<Value>, faces: &Faces) -> Result<Vec<Value>, Halt> {
+    if let Some(other) = faces.clone().members().iter().find(|v| !matches!(v, Value::Surface(_) | Value::Shell(_))) {
+        return Err(ValueFault::WrongKind { argument: "of", wanted: "a box, or faces", found: cx.kind(other) }.into());
+    }
+    let (tolerance, surfaces) = (cx.tolerance()?, faces.surfaces());
+    let mut runs = Vec::new();
+    for curve in curves {
+        if !matches!(curve, Value::Curve(_) | Value::Link(..) | Value::Edge(..)) {
+            return Err(ValueFault::WrongKind { argument: "edges", wanted: "a curve", found: cx.kind(&curve) }.into());
+        }
+        let chain = cx.as_chain(curve)?;
+        runs.extend(within_faces(&chain, &surfaces, &tolerance)?.into_iter().map(Value::Curve));
+    }
+    Ok(runs)
 }
 
 /// Edges whose length is one of the wanted.

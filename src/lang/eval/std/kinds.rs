@@ -146,6 +146,17 @@ impl FromValue for Edged {
     }
 }
 
+/// Edges or curves: one, or lists of them.
+#[derive(Clone, Debug)]
+pub struct EdgesOrCurves(pub Vec<Value>);
+
+impl FromValue for EdgesOrCurves {
+    const TY: Ty = Ty::OneOf(&[Ty::Edge, Ty::Curve, Ty::List(&Ty::Any)]);
+    fn from_value(value: Value) -> Option<Self> {
+        Some(Self(if let Value::List(items) = value { items.to_vec() } else { vec![value] }))
+    }
+}
+
 /// Faces of surfaces and shells.
 #[derive(Clone, Debug)]
 pub struct Faces(Vec<Value>);

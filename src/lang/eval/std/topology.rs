@@ -12,8 +12,8 @@ use crate::lang::eval::context::Cx;
 use crate::lang::eval::halt::Halt;
 use crate::lang::eval::scene::Scene;
 use crate::lang::eval::std::choosing;
-use crate::lang::eval::std::kinds::{Carrier, EdgeKey, EdgeOf, Edged, Faces, VertexOf};
-use crate::lang::values::conversions::{Angle, Length};
+use crate::lang::eval::std::kinds::{Carrier, EdgeKey, EdgeOf, Edged, EdgesOrCurves, Faces, VertexOf};
+use crate::lang::values::conversions::{Angle, FromValue, IntoValue, Length};
 use crate::lang::values::value::{EntityHome, Value};
 use crate::model::contact::Turn;
 use crate::model::{EdgeCurve, EdgeId, Model, PatchId, SharedEdge, SharedEdges, SurfaceId};
@@ -100,7 +100,7 @@ fn corners(cx: &mut Cx, value: &Value) -> Result<Box3, Halt> {
     let ends = if let Value::Record(record) = value { [min, max].map(|key| point(record.get(key))) } else { [None, None] };
     match ends {
         [Some(a), Some(b)] => Ok(Box3::of([a, b])),
-        _ => Err(ValueFault::WrongKind { argument: "of", wanted: "a box", found: cx.kind(value) }.into()),
+        _ => Err(ValueFault::WrongKind { argument: "of", wanted: "a box, or faces", found: cx.kind(value) }.into()),
     }
 }
 
@@ -226,27 +226,6 @@ builtins! {
         on: EdgeKey,
     ) -> EdgeOf = |cx, of, on| edge_of(cx, &of.0, &on);
 
-    /// The edges that faces of one list share with faces of another.
-    ///
-    /// All of them are glued as a shell would glue them, so a border that two faces share is one edge; of a corner that the two have in common there is none.
-    /// They are a list in the order of the faces of `a`, for groups, rules of meshes and checks; `edge_between(s, s)` are the inner edges and
-    /// seams of `s`, if it has some. Other faces that share no edge are E618.
-    /// ```loft
-    /// curve south = line((0, 0, 0), (4m, 0, 0))
-    /// surface wall = extrude(south, by: (0, 0, 3m))
-    /// surface slab = extrude(south, by: (0, 2m, 0))
-    /// let foot = edge_between(wall, slab)
-    /// check len(foot) == 1 and foot[0].length == 4m within 1e-9%
-    /// group joint of foot
-    /// mesh fine of wall, slab { size: 500mm  on foot { count: 10 } }
-    /// ```
-    fn edge_between(
-        /// A surface, a shell, or several.
-        a: Edged,
-        /// What it shares edges with.
-        b: Edged,
-    ) -> Vec<EdgeOf> = |cx, a, b| choosing::between(cx, &a.0, &b.0);
-
     /// Edges at which the faces of surfaces or shells turn by more than an angle.
     ///
     /// The angle is that between the normals of the two faces, 0 where they join smoothly and 180 degrees where they fold
@@ -281,22 +260,52 @@ builtins! {
         carrier: Carrier,
     ) -> Vec<EdgeOf> = |cx, edges, carrier| choosing::on(cx, edges, &carrier);
 
-    /// Edges that lie inside a box along the axes, its border included.
+    /// Edges inside a box, or the runs of curves inside faces.
     ///
+    /// A box lies along the axes; an edge is inside when all of it is. Of a curve it is what lies on a surface or shell, within the tolerance and
+    /// inside of its loops: runs of the curve in their order, each a curve, none where no part of it lies there. A run goes on where faces join, and past
+    /// the start of a closed curve. `project` brings a curve onto a surface before. The borders of box and faces belong to them.
     /// ```loft
     /// curve south = line((0, 0, 0), (4m, 0, 0))
     /// surface wall = extrude(south, by: (0, 0, 3m))
     /// let low = wall.edges.inside(box((0, 0, 0), (4m, 0, 1m)))[0].length // => 4000mm
+    /// let rail = line((-1m, 0, 1m), (6m, 0, 1m))
+    /// curve held = rail.inside(wall)[0]
+    /// check held.length == 4m within 1e-9%
     /// ```
     fn inside(
-        /// Edges; lists of them flatten.
-        edges: Vec<Value>,
-        /// A box, as `box` and `bbox` give it.
+        /// Edges, of a box; curves, of faces. Lists of them flatten.
+        edges: EdgesOrCurves,
+        /// A box, as `box` and `bbox` give it; or a surface, a shell, or several.
         of: Value,
-    ) -> Vec<EdgeOf> = |cx, edges, of| {
+    ) -> Vec<Value> = |cx, edges, of| {
+        if let Some(faces) = Edged::from_value(of.clone()) {
+            return choosing::runs_inside(cx, edges.0, &faces.0);
+        }
         let around = corners(cx, &of)?;
-        choosing::inside(cx, edges, &around)
+        Ok(choosing::inside(cx, edges.0, &around)?.into_iter().map(IntoValue::into_value).collect())
     };
+
+    /// The edges that faces of one list share with faces of another.
+    ///
+    /// All of them are glued as a shell would glue them, so a border that two faces share is one edge; of a corner that the two have in common there is none.
+    /// They are a list in the order of the faces of `a`, for groups, rules of meshes and checks; `edge_between(s, s)` are the inner edges and
+    /// seams of `s`, if it has some. Other faces that share no edge are E618.
+    /// ```loft
+    /// curve south = line((0, 0, 0), (4m, 0, 0))
+    /// surface wall = extrude(south, by: (0, 0, 3m))
+    /// surface slab = extrude(south, by: (0, 2m, 0))
+    /// let foot = edge_between(wall, slab)
+    /// check len(foot) == 1 and foot[0].length == 4m within 1e-9%
+    /// group joint of foot
+    /// mesh fine of wall, slab { size: 500mm  on foot { count: 10 } }
+    /// ```
+    fn edge_between(
+        /// A surface, a shell, or several.
+        a: Edged,
+        /// What it shares edges with.
+        b: Edged,
+    ) -> Vec<EdgeOf> = |cx, a, b| choosing::between(cx, &a.0, &b.0);
 
     /// Edges whose length is between two lengths.
     ///
