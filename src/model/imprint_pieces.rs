@@ -15,7 +15,7 @@ use crate::base::par;
 use crate::base::tolerance::{MEASURE_ACCURACY, Tolerance};
 use crate::geometry::data::fault::CurveFault;
 use crate::network::{Chain, Network};
-use crate::surface::intersect::with_curve::runs_on;
+use crate::surface::intersect::runs::runs_on;
 use crate::surface::{Domain, Nearest, Surface, over_frame, parted, with_loops};
 
 /// Places along a curve at which it is compared with another one.

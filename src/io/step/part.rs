@@ -69,6 +69,11 @@ fn name(file: &File, entity: u32) -> Option<String> {
     given(file.under(entity, b"REPRESENTATION_ITEM").unwrap_or(file.parameters(entity)).text(0))
 }
 
+/// Whether a body goes by the name of the copy of a product that it is.
+fn is_copy(instance: &Instance, alone: bool) -> bool {
+    alone && instance.parent.is_some() && given(instance.name.clone()).is_some()
+}
+
 impl StepPartBuilder<'_> {
     fn run(mut self, assembly: &Assembly) -> Part {
         let mut unread = Unread::new();
@@ -127,6 +132,10 @@ impl StepPartBuilder<'_> {
         let still = placed.motion == Motion::translation(DVec3::ZERO);
         let (points, curves, faces) = (self.part.points.len(), self.part.curves.len(), self.part.surfaces.len());
         let (solid, way) = (placed.item, assembly.way(placed));
+        // A surface of several faces that have its name, too, is meant by it.
+        let is_copy = is_copy(&assembly.instances[placed.instance], alone);
+        let models: Vec<Option<u32>> = shape.bundles.iter().map(|bundle| bundle.model.filter(|_| !is_copy)).collect();
+        let models = models.into_iter().map(|model| name(self.step.file, model?).map(|own| self.names.give(&own))).collect::<Vec<_>>();
         for (entity, p) in shape.points {
             let color = self.styles.curve(&[entity, solid], &way).cloned();
             let at = PartPlace::Point(self.part.points.len());
@@ -159,11 +168,12 @@ impl StepPartBuilder<'_> {
             held.surfaces.extend(faces..self.part.surfaces.len());
         }
         let mut solid_name = String::new();
-        for bundle in &shape.bundles {
-            let group = moved(bundle, first);
+        for (bundle, model) in shape.bundles.iter().zip(models) {
+            let mut group = moved(bundle, first);
             if group.is_empty() {
                 continue;
             }
+            group.name = model.unwrap_or_default();
             self.bundle(bundle, group, &mut solid_name, placed.instance, &assembly.instances[placed.instance], alone);
         }
     }
@@ -185,8 +195,7 @@ impl StepPartBuilder<'_> {
         }
         let named_by_part = own.is_none() && alone && given(instance.name.clone()).is_some();
         // A product with one body is that body: its name says which copy it is.
-        let copied = alone && instance.parent.is_some() && given(instance.name.clone()).is_some();
-        let wanted = if named_by_part || copied { Some(instance.name.clone()) } else { own };
+        let wanted = if named_by_part || is_copy(instance, alone) { Some(instance.name.clone()) } else { own };
         let word = match bundle.sort {
             BundleKind::Solid => "solid",
             BundleKind::Set => "set",
@@ -195,7 +204,9 @@ impl StepPartBuilder<'_> {
         let before = self.part.groups.len();
         group.own.clone_from(&wanted);
         let wanted = wanted.unwrap_or_else(|| format!("{word}{}", before + 1));
-        group.name = self.names.give(&wanted);
+        if group.name.is_empty() {
+            group.name = self.names.give(&wanted);
+        }
         solid.clone_from(&group.name);
         if wanted == instance.name && alone {
             self.single[place] = Some(before);

@@ -12,8 +12,8 @@ use crate::surface::closest::nearest::Nearest;
 use crate::surface::core::surface::Surface;
 use crate::surface::data::breaks::chain_breaks;
 use crate::surface::data::kind::Domain;
+use crate::surface::intersect::runs::runs_on;
 use crate::surface::intersect::sheet::{Cell, widely_grounded};
-use crate::surface::intersect::with_curve::runs_on;
 use crate::surface::rails::side::{Side, between};
 use crate::surface::trims::trim_loop::shifts;
 

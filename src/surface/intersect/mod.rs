@@ -15,6 +15,7 @@ pub mod pair;
 pub mod patch_pair;
 pub mod planes;
 pub mod revolved;
+pub mod runs;
 pub mod self_intersection;
 pub mod sheet;
 pub mod turned;

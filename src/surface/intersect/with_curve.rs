@@ -78,36 +78,6 @@ fn united_meetings(mut all: Vec<SurfaceMeeting>, chain: &Chain, tolerance: &Tole
     out
 }
 
-/// The runs of a curve that lie on a surface; one that is a point within the tolerance is none. Fails as [`with_curve`] does.
-pub fn runs_on(chain: &Chain, surface: &Surface, tolerance: &Tolerance) -> Result<Vec<Chain>> {
-    let near = tolerance.point / chain.length();
-    let met = with_curve(chain, std::slice::from_ref(surface), tolerance)?;
-    let runs = met.into_iter().filter_map(|run| Some((run.f, run.overlap_end?))).filter(|(from, to)| to - from > near);
-    let whole = |from: f64, to: f64| from <= near && to >= 1.0 - near;
-    runs.map(|(from, to)| if whole(from, to) { Ok(chain.clone()) } else { chain.slice(from, to, tolerance) }).collect()
-}
-
-/// The runs of a curve that lie inside faces, their borders included, in order along it; where faces join they go on, and so does a closed
-/// curve past its start. One that is a point within the tolerance is none. Fails as [`with_curve`] does.
-pub fn inside(chain: &Chain, faces: &[Surface], tolerance: &Tolerance) -> Result<Vec<Chain>> {
-    let near = tolerance.point / chain.length();
-    let met = with_curve(chain, faces, tolerance)?;
-    let mut runs: Vec<Stretch> =
-        met.into_iter().filter_map(|run| Some((run.f, run.overlap_end?))).filter(|(from, to)| to - from > near).collect();
-    let (first, last) = (runs.first().copied(), runs.last().copied());
-    if let (Some(first), Some(last)) = (first, last)
-        && runs.len() > 1
-        && chain.is_closed(tolerance)
-        && first.0 <= near
-        && last.1 >= 1.0 - near
-    {
-        runs.pop();
-        runs[0] = (last.0, first.1);
-    }
-    let whole = |(from, to): Stretch| from <= near && to >= 1.0 - near;
-    runs.into_iter().map(|run| if whole(run) { Ok(chain.clone()) } else { chain.slice(run.0, run.1, tolerance) }).collect()
-}
-
 /// A surface that curves are met with: bounds of it that one curve asked for serve the next.
 pub(crate) struct CurveSearch<'a> {
     mapped: &'a Surface,

@@ -20,7 +20,7 @@ use crate::lang::values::value::Value;
 use crate::model::{PatchId, SharedEdge, SharedTrack, SurfaceId};
 use crate::network::Chain;
 use crate::surface::core::plane::unbounded;
-use crate::surface::intersect::with_curve::inside as within_faces;
+use crate::surface::intersect::runs::inside as within_faces;
 use crate::surface::{Nearest, Surface, chain_breaks, curve_bbox};
 
 /// Places of an edge that are looked at first.
