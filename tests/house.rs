@@ -105,7 +105,7 @@ const CEILINGS: &[(&str, usize)] = &[
     ("base", 5_000),
     ("geometry", 7_200),
     ("network", 5_150),
-    ("surface", 37_000),
+    ("surface", 37_300),
     ("model", 7_400),
     ("mesh", 35_100),
     ("hydrostatics", 2_300),
