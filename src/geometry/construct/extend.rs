@@ -90,7 +90,7 @@ pub fn extend(curve: &Curve, end: End, by: f64, how: Onward, origin: Origin) -> 
     Ok(made.built_through(None).with_origin(origin))
 }
 
-/// What is asked for, of a curve that is to be longer at its end.
+/// A request to make a curve longer by a length at its end.
 struct Longer {
     of: Origin,
     end: End,
@@ -187,7 +187,7 @@ impl Longer {
         net
     }
 
-    /// What is added to a B-spline or an offset: as long as asked for, its parameter from the end of the curve's.
+    /// The piece that is added to a B-spline or an offset, of the wanted length; its parameter begins where that of the curve ends.
     fn more(&self, curve: &Curve) -> Result<Curve> {
         self.tangent(curve)?;
         let (from, to) = curve.domain();
@@ -265,7 +265,7 @@ impl Longer {
     }
 }
 
-/// What follows a B-spline, an ellipse or an offset of one over `step` of the parameter; `None` where it does not go so far.
+/// The continuation of a B-spline, an ellipse or an offset of one over `step` of the parameter; `None` where it does not reach so far.
 fn beyond(curve: &Curve, step: f64) -> Option<Curve> {
     let shape = match curve.shape() {
         Shape::Nurbs(net) => {

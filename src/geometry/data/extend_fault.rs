@@ -23,7 +23,7 @@ pub enum NoEnd {
     Sides,
 }
 
-/// What ends the way of an extension.
+/// Why an extension cannot reach any farther.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stop {
     /// An arc or ellipse is one turn at most; an arc is then closed.
@@ -74,7 +74,7 @@ pub enum ExtendFault {
         by: f64,
         /// The length that there is.
         most: f64,
-        /// What ends it.
+        /// Why it reaches no farther.
         stop: Stop,
     },
 }
