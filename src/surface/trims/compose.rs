@@ -84,8 +84,8 @@ fn over_net(net: &NurbsSurface, pieces: Vec<Bezier>) -> Option<Vec<Nurbs>> {
     Some(parted.iter().map(|piece| patches.over(piece)).collect())
 }
 
-/// A piece cut where u (or v) is a knot.
-fn cut(piece: Bezier, knot: f64, along_u: bool) -> Vec<Bezier> {
+/// Parameters at which u (or v) of a piece is a number, ascending; none of a piece that is all there.
+pub(super) fn where_it_is(piece: &Bezier, knot: f64, along_u: bool) -> Vec<f64> {
     let off = |b: &DVec4| if along_u { b.x - knot * b.w } else { b.y - knot * b.w };
     let (mut cuts, mut open): (Vec<(f64, f64)>, _) = (Vec::new(), vec![(piece.clone(), 0)]);
     while let Some((part, halved)) = open.pop() {
@@ -104,10 +104,16 @@ fn cut(piece: Bezier, knot: f64, along_u: bool) -> Vec<Bezier> {
         let (left, right) = part.halves();
         open.extend([(right, halved + 1), (left, halved + 1)]);
     }
+    cuts.iter().map(|c| 0.5 * (c.0 + c.1)).collect()
+}
+
+/// A piece cut where u (or v) is a knot.
+fn cut(piece: Bezier, knot: f64, along_u: bool) -> Vec<Bezier> {
+    let cuts = where_it_is(&piece, knot, along_u);
     let room = EPSILON * (piece.t1 - piece.t0).max(piece.t1.abs());
     let mut found = Vec::new();
     let mut rest = Nurbs::bezier(piece.t0, piece.t1, piece.poles.clone());
-    for at in cuts.iter().map(|c| 0.5 * (c.0 + c.1)) {
+    for at in cuts {
         let (a, b) = rest.domain();
         if at - a > room && b - at > room {
             found.extend(rest.part(a, at).beziers());

@@ -8,6 +8,7 @@ pub mod faces;
 pub mod loops;
 pub mod noncontractible;
 pub mod outlined;
+pub mod over_lines;
 pub mod pcurve;
 pub mod project;
 pub mod shared_runs;

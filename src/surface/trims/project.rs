@@ -8,7 +8,7 @@ use glam::{DMat3, DVec2, DVec3};
 
 use crate::base::fault::{Fault, Result};
 use crate::base::origin::Origin;
-use crate::base::tolerance::{EPSILON, NUDGE, Tolerance};
+use crate::base::tolerance::{EPSILON, NUDGE, SLIVER, Tolerance};
 use crate::geometry::curves::curve::Shape;
 use crate::geometry::data::fault::CurveFault;
 use crate::geometry::{Curve, Kind, Nurbs};
@@ -16,11 +16,12 @@ use crate::network::Chain;
 use crate::surface::closest::foot;
 use crate::surface::closest::nearest::Nearest;
 use crate::surface::core::surface::Surface;
-use crate::surface::data::breaks::chain_breaks;
+use crate::surface::data::breaks::{chain_breaks, tidy};
 use crate::surface::data::jet::Jet2;
 use crate::surface::data::kind::Domain;
 use crate::surface::faults::BorderFault;
 use crate::surface::trims::compose;
+use crate::surface::trims::over_lines::Lines;
 
 /// What steers the projection of a curve and its cubics.
 struct Projecting {
@@ -122,6 +123,7 @@ pub(crate) fn cubics<E>(
 struct Projector<'a> {
     surface: &'a Surface,
     near: Nearest,
+    lines: Lines<'a>,
     chain: &'a Chain,
     way: Way,
 }
@@ -131,7 +133,7 @@ struct Projector<'a> {
 /// Fails with E613 where the curve leaves the surface (its parameters, or the direction misses it), E413 where the result
 /// has a cusp.
 pub fn project(surface: &Surface, chain: &Chain, way: Way, origin: Origin, tolerance: &Tolerance) -> Result<Curve> {
-    let carrier = Projector { surface, near: Nearest::new(surface), chain, way };
+    let carrier = Projector { surface, near: Nearest::new(surface), lines: Lines::of(surface), chain, way };
     let off = |at: DVec3, distance: f64| BorderFault::LoopOutsideSurface {
         of: chain.origin(),
         surface: surface.origin(),
@@ -143,7 +145,11 @@ pub fn project(surface: &Surface, chain: &Chain, way: Way, origin: Origin, toler
         (Way::Parameters, p) => BorderFault::LoopOutsideParameters { of: chain.origin(), surface: surface.origin(), uv: (p.x, p.y) },
         (_, p) => off(p, carrier.near.at(p).distance),
     };
-    let stops = [vec![0.0], chain_breaks(chain), vec![1.0]].concat();
+    let mut breaks = chain_breaks(chain);
+    if matches!(way, Way::Parameters) {
+        breaks.extend(carrier.lines.met(chain));
+    }
+    let stops = [vec![0.0], tidy(breaks, SLIVER), vec![1.0]].concat();
     let land = |f: f64, guess: Option<DVec2>, before: bool| carrier.at(f, guess, before).ok_or_else(|| Fault::from(missed(f)));
     let lost = |at| CurveFault::NotConverged { of: origin, what: "the curve on the surface".to_owned(), at }.into();
     if let (Way::Parameters, Some(curve)) = (way, compose::exact(surface, chain, origin)) {
@@ -195,7 +201,7 @@ impl Projector<'_> {
                 if !(endless || (closed_u || inside(uv.x)) && (closed_v || inside(uv.y))) {
                     return None;
                 }
-                let s = self.surface.jet(uv.x, uv.y);
+                let s = self.lines.jet(uv, jet.d1.truncate(), before);
                 Some(Landing { uv, p: s.p, d1: s.du * jet.d1.x + s.dv * jet.d1.y })
             }
             Way::Nearest => {
