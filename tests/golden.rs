@@ -73,10 +73,10 @@ fn traces(model: &Path, threads: usize) -> Vec<(PathBuf, Vec<u8>)> {
 #[test]
 fn threads_change_nothing() {
     let all = sample(scripts(&["examples", "tests/golden"]), 1);
-    let mut files = 0;
     for model in &all {
         let one = traces(model, 1);
-        files += one.len() - 2;
+        let exports = fs::read_to_string(model).unwrap().lines().any(|line| line.starts_with("export "));
+        assert!(!exports || one.len() > 2, "{} leaves no file", model.display());
         let counts: &[usize] = if model.ends_with("block.loft") { &[2, 8] } else { &[8] };
         for &threads in counts {
             for (a, b) in one.iter().zip(traces(model, threads)) {
@@ -84,7 +84,7 @@ fn threads_change_nothing() {
             }
         }
     }
-    assert!(files * 5 >= all.len(), "{files} files of {} models", all.len());
+    assert!(!all.is_empty());
 }
 
 /// A folder with one model, which goes when the test ends.
