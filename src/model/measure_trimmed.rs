@@ -44,9 +44,11 @@ struct Run {
     depth: u32,
 }
 
-/// What a rule makes of a run: the sum, where asked for about that of what is added up regardless of sign, and the box of its places in (u, v).
+/// What a rule makes of a run: the sum, the change of v, where asked for about the sum of what is added up regardless of sign, and the box of
+/// its places in (u, v).
 struct Met<const N: usize> {
     sum: Sums<N>,
+    rise: f64,
     size: Sums<N>,
     within: (DVec2, DVec2),
 }
@@ -158,7 +160,7 @@ where
 
     /// F dv along a run by a rule, with its size if that is wanted.
     fn along(&self, run: &Run, rule: &[(f64, f64)], wanted: bool) -> Met<N> {
-        let (mut sum, mut size) = ([0.0; N], [0.0; N]);
+        let (mut sum, mut rise, mut size) = ([0.0; N], 0.0, [0.0; N]);
         let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         for (x, w) in rule {
             let half = 0.5 * (run.t.1 - run.t.0);
@@ -169,6 +171,7 @@ where
             if dv == 0.0 {
                 continue;
             }
+            rise += half * w * dv;
             for (i, value) in self.along_u(base, at).into_iter().enumerate() {
                 sum[i] += half * w * dv * value;
             }
@@ -178,7 +181,27 @@ where
                 (0..N).for_each(|i| size[i] += (half * w * dv * (at.x - base) * value[i]).abs() / SIZED.len() as f64);
             }
         }
-        Met { sum, size, within: (low, high) }
+        Met { sum, rise, size, within: (low, high) }
+    }
+
+    /// What a rule that met a run misses where the foot of a curve beside the surface leaps over a kink line, or stays on it: F times what v
+    /// changes by beyond the rise that was added up.
+    fn leap(&self, run: &Run, met: &Met<N>) -> Option<Sums<N>> {
+        let kinks = self.evaluator.surface().kinks().1;
+        let (base, way) = &self.ways[run.border];
+        let Way::Chain(..) = way else { return None };
+        if kinks.is_empty() {
+            return None;
+        }
+        let [from, to] = [run.t.0, run.t.1].map(|t| way.at(self.evaluator, t).0);
+        let missed = to.y - from.y - met.rise;
+        let missed = if self.closed_v { missed - missed.round() } else { missed };
+        let (low, high) = (met.within.0.y.min(from.y).min(to.y), met.within.1.y.max(from.y).max(to.y));
+        let is_beside = |kink: f64| {
+            let kink = if self.closed_v { kink + (low - kink).round() } else { kink };
+            kink >= low - missed.abs() && kink <= high + missed.abs()
+        };
+        kinks.iter().any(|kink| is_beside(*kink)).then(|| self.along_u(*base, from.midpoint(to)).map(|value| value * missed))
     }
 
     /// Whether no break lies between the places of a run: few points then tell as much as many.
@@ -213,14 +236,25 @@ pub fn trimmed_integral<const N: usize>(
     let measure = |(run, met): &(Run, Met<N>)| {
         job::poll();
         let few = green.is_even(met.within).then(|| {
-            let value = green.along(run, &rules[0][1], false).sum;
-            (value, apart(&value, &met.sum))
+            let more = green.along(run, &rules[0][1], false);
+            let apart = apart(&more.sum, &met.sum);
+            (more, apart)
         });
-        let (value, apart) = few.filter(|(_, off)| small(off, &limit)).unwrap_or_else(|| {
-            let value = green.along(run, &rules[1][1], false).sum;
-            (value, apart(&value, &green.along(run, &rules[1][0], false).sum))
+        let (more, mut apart) = few.filter(|(_, off)| small(off, &limit)).unwrap_or_else(|| {
+            let more = green.along(run, &rules[1][1], false);
+            let apart = apart(&more.sum, &green.along(run, &rules[1][0], false).sum);
+            (more, apart)
         });
-        Part { value, apart, limit, last: run.depth >= MAX_DEPTH }
+        let (mut value, last) = (more.sum, run.depth >= MAX_DEPTH);
+        if let Some(leap) = green.leap(run, &more) {
+            // A leap stays as it is however short the run: the shortest one takes it in.
+            if last {
+                add(&mut value, &leap);
+            } else {
+                add(&mut apart, &leap.map(f64::abs));
+            }
+        }
+        Part { value, apart, limit, last }
     };
     let halves = |(run, _): (Run, Met<N>)| {
         let middle = 0.5 * (run.t.0 + run.t.1);
