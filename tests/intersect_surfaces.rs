@@ -246,10 +246,14 @@ fn tubes_cross_tubes() {
 #[test]
 fn surfaces_on_each_other_are_told() {
     let a = tube(DVec3::Z, 1.0, 4.0);
-    for b in [tube(DVec3::Z, 1.0, 3.0), flat(DVec3::X, DVec3::X), tube(DVec3::Z, 1.0, 4.0)] {
+    for b in [tube(DVec3::Z, 1.0, 3.0), tube(DVec3::Z, 1.0, 4.0)] {
         let fault = with_surfaces::with_surfaces(from_ref(&a), &[b], Origin::NONE, &tolerance()).unwrap_err();
         assert_eq!(fault.code().0, "E657", "{fault}");
     }
+    // A plane that touches it along a line meets it there.
+    let ruling = with_surfaces::with_surfaces(from_ref(&a), &[flat(DVec3::X, DVec3::X)], Origin::NONE, &tolerance()).unwrap();
+    assert_eq!(ruling.curves.len(), 1);
+    assert!((ruling.curves[0].length() - 4.0).abs() < 1e-12);
 }
 
 /// Rows of signs over a fine grid: how many lines of zeros a height over the unit square has, by runs of cells that touch.

@@ -82,25 +82,14 @@ fn extruded(face: &Surface, tolerance: &Tolerance) -> Result<Option<(Chain, DVec
     Ok(Some((between(chain, map.value(0.0), map.value(1.0), tolerance)?, by)))
 }
 
-/// Where the plane runs along the extrusion: a straight line from each point of the profile at which that crosses it. `None` where the
-/// profile touches it.
+/// Where the plane runs along the extrusion: a straight line from each point of the profile at which that crosses or touches it. `None`
+/// where the profile runs along it.
 fn rulings(profile: &Chain, by: DVec3, plane: &Flat, sides: &[HalfSpace], origin: Origin, tolerance: &Tolerance) -> Result<Option<Lines>> {
     let space = HalfSpace { inward: plane.normal, height: plane.normal.dot(plane.p) };
     let Some(stops) = stops(profile, &space, tolerance)? else { return Ok(None) };
     let mut found = Lines::default();
-    let closed = profile.is_closed(tolerance);
-    let last = stops.len().saturating_sub(1);
-    for (k, f) in stops.iter().enumerate() {
-        // Places between it and its neighbours.
-        let (before, after) = match closed {
-            true => (if k == 0 { stops[last] - 1.0 } else { stops[k - 1] }, if k == last { stops[0] + 1.0 } else { stops[k + 1] }),
-            false => (if k == 0 { 0.0 } else { stops[k - 1] }, if k == last { 1.0 } else { stops[k + 1] }),
-        };
-        let above = |other: f64| space.holds(profile.point((0.5 * (f + other)).rem_euclid(1.0)));
-        if (closed || before < *f && *f < after) && above(before) == above(after) {
-            return Ok(None);
-        }
-        let p = profile.point(*f);
+    for f in stops {
+        let p = profile.point(f);
         let line = Chain::of_curve(&build::line(p, p + by, origin)?);
         let Some(parts) = kept(&line, sides, tolerance)? else { return Ok(None) };
         for (from, to) in parts.into_iter().filter(|(from, to)| (to - from) * line.length() > tolerance.point) {
