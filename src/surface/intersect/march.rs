@@ -6,7 +6,7 @@ use crate::base::job;
 use crate::base::tolerance::{EPSILON, NUDGE, TOLD_APART};
 use crate::surface::closest::foot::FootSearch;
 use crate::surface::intersect::fit_branch::Branch;
-use crate::surface::intersect::pair::{Pair, Spot};
+use crate::surface::intersect::pair::{EXACT, Pair, Spot};
 use crate::surface::intersect::sheet::{BorderLine, Patch};
 
 /// What steers the steps along an intersection.
@@ -86,7 +86,7 @@ impl Pair<'_> {
             let here = spots[spots.len() - 1];
             h = h.min(strides.longest(here.p));
             if h < NUDGE * NUDGE * size {
-                return Err(here.p);
+                return if self.is_along_border(&here, size) { Ok((spots, false)) } else { Err(here.p) };
             }
             let Some((a, b)) = self.ahead(&here, here.way * h) else { return self.stopped(spots, here) };
             if let Some((share, first, line)) = self.leaves(&here, a, b).filter(|_| !self.stays(&here, h, (a, b))) {
@@ -96,7 +96,7 @@ impl Pair<'_> {
                 let (x, y) = (here.a.lerp(a, share), here.b.lerp(b, share));
                 match self.on_border(first, line, x, y).map(|end| self.aligned(&here, end)) {
                     Some(end)
-                        if fits(&here, &end, h)
+                        if fits(&here, &end, h.max(end.p.distance(here.p)))
                             && self.is_in(&end)
                             && as_far(&here, &end, share * h, size)
                             && self.turns_little(&here, &end) =>
@@ -138,6 +138,19 @@ impl Pair<'_> {
         let target = here.p + here.way * h;
         let next = self.correct(self.a.hold(a), self.b.hold(b), Some((target, here.way))).map(|next| self.aligned(here, next));
         next.is_some_and(|next| fits(here, &next, h) && self.is_in(&next) && next.way.dot(here.way) >= MARCH.turn_cosines.0)
+    }
+
+    /// Whether the line comes to a border so nearly along it that it leaves by less than what is one place if it comes back.
+    fn is_along(&self, first: bool, line: BorderLine, spot: &Spot, size: f64) -> bool {
+        self.rise(first, line, spot) <= (EXACT * self.point / size).sqrt()
+    }
+
+    /// Whether a place is on a border and the line runs along that one there: it may leave by less than can be told.
+    fn is_along_border(&self, here: &Spot, size: f64) -> bool {
+        let ends = |(first, patch): (bool, &Patch)| {
+            patch.lines().into_iter().any(|line| self.is_at(first, line, here) && self.is_along(first, line, here, size))
+        };
+        [(true, self.a), (false, self.b)].into_iter().any(ends)
     }
 
     /// Whether the line turns by no more than a step may on its way to a place, or is too short to tell.

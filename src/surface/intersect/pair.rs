@@ -28,7 +28,7 @@ pub(crate) struct Pair<'a> {
 }
 
 /// Share of the tolerance within which a place is on both.
-const EXACT: f64 = 1.0 / 1024.0;
+pub(super) const EXACT: f64 = 1.0 / 1024.0;
 /// Two points are one when they are no farther apart than so many roundings.
 const ROUNDINGS: f64 = 16.0;
 /// Newton steps.
@@ -97,12 +97,18 @@ impl Pair<'_> {
         let (x, y) = if first { (a, b) } else { (b, a) };
         let (mut x, mut y) = (own.hold(line.onto(x)), other.hold(y));
         let along = line.along();
+        // Where they only touch steps may lead away from the best place again.
+        let mut best = (f64::INFINITY, x, y);
         for _ in 0..STEPS {
             let (s, t) = (own.jet(x), other.jet(y));
+            let gap = s.p.distance_squared(t.p);
+            if gap < best.0 {
+                best = (gap, x, y);
+            }
             let run = s.du * along.x + s.dv * along.y;
             if run.length() <= SINGULAR * (s.du.length() + s.dv.length()) {
                 // A pole: one point, whatever the place on the line.
-                y = other.foot(s.p, y).0;
+                best = (0.0, x, other.foot(s.p, y).0);
                 break;
             }
             let step = solved(run, -t.du, -t.dv, t.p - s.p)?;
@@ -112,11 +118,20 @@ impl Pair<'_> {
             let moved = (next - x).abs().max_element().max((there - y).abs().max_element());
             (x, y) = (line.onto(next), there);
             if moved <= EPSILON {
+                best = (0.0, x, y);
                 break;
             }
         }
+        let (_, x, y) = best;
         let (a, b) = if first { (x, y) } else { (y, x) };
         self.spot(a, b)
+    }
+
+    /// Sine of the angle between the common line and a border at a place on both.
+    pub fn rise(&self, first: bool, line: BorderLine, spot: &Spot) -> f64 {
+        let (own, uv) = if first { (self.a, spot.a) } else { (self.b, spot.b) };
+        let (jet, along) = (own.jet(uv), line.along());
+        (jet.du * along.x + jet.dv * along.y).normalize_or_zero().cross(spot.way).length()
     }
 
     /// Whether a place is on a border but for what may part the two points of a place: a line that leaves there over a pole has no other end.

@@ -23,7 +23,7 @@ use crate::surface::intersect::join_curves::{self, STRAIGHT};
 use crate::surface::intersect::known_curves::KnownCurve;
 use crate::surface::intersect::lost_runs::with_lost_runs;
 use crate::surface::intersect::patch_pair::{Stopped, common};
-use crate::surface::intersect::planes::flat_faces;
+use crate::surface::intersect::planes::{flat_faces, on_both};
 use crate::surface::intersect::revolved::flat_and_revolved;
 use crate::surface::intersect::sheet::{Sheet, patches, widely_grounded};
 use crate::surface::intersect::turned::flat_and_turned;
@@ -135,7 +135,10 @@ fn searched([a, b]: [&Surface; 2], [box_a, box_b]: [Box3; 2], origin: Origin, to
             })?;
             let mut own = Vec::new();
             for branch in &found.branches {
-                own.extend(curve(&branch.cubics, origin, tolerance)?);
+                match curve(&branch.cubics, origin, tolerance)? {
+                    Some(curve) => own.push(curve),
+                    None => touches.extend(on_both(branch.spots.first().map(|spot| spot.p).into_iter().collect(), [a, b], tolerance)),
+                }
             }
             // Beside a known curve a march finds that one again, within the tolerance only.
             own.retain(|curve| !known_curves.iter().any(|known| lies_on(curve, &known.chain, tolerance)));
