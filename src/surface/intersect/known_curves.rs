@@ -82,6 +82,11 @@ impl KnownCurve {
         Ok(found)
     }
 
+    /// A curve on two patches with places in the (u, v) of each.
+    pub fn on_patches(chain: Chain, places: Vec<[DVec2; 2]>) -> Self {
+        Self { chain, places, turns: [vec![DVec2::ZERO], vec![DVec2::ZERO]] }
+    }
+
     /// Whether faces that cross in a place at an angle of this sine cross in this curve there: it is within the tolerance `point` of both, and
     /// so within twice that over the sine of where they cross. No farther than `most`.
     pub fn is_at(&self, p: DVec3, sine: f64, point: f64, most: f64) -> bool {

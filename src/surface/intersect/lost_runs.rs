@@ -15,12 +15,16 @@ use crate::network::Chain;
 use crate::surface::closest::foot::FootSearch;
 use crate::surface::closest::nearest::closest;
 use crate::surface::intersect::join_curves::joined;
-use crate::surface::intersect::pair::Pair;
+use crate::surface::intersect::pair::{Pair, Spot};
 use crate::surface::intersect::sheet::Sheet;
 use crate::surface::intersect::with_surfaces::{curve, lies_on};
 
 /// The most borders in a row behind which runs are looked for.
 const ROUNDS: usize = 16;
+
+/// Surfaces that bend by so much over the size of a patch, and overlap by the tolerance, cross at no larger a sine than the root of this times
+/// the tolerance over the size.
+const TOUCHING: f64 = 16.0;
 
 /// Adds the runs that go on from free ends of some curves.
 pub(super) fn with_lost_runs(mut curves: Vec<Curve>, sheets: [&[Sheet]; 2], origin: Origin, tolerance: &Tolerance) -> Result<Vec<Curve>> {
@@ -56,7 +60,10 @@ fn from(at: DVec3, sheets: [&[Sheet]; 2], origin: Origin, tolerance: &Tolerance)
         for (y, b) in &beside[1] {
             let pair = Pair { a: &x.patch, b: &y.patch, point: tolerance.point };
             let size = x.bounds().diagonal().min(y.bounds().diagonal());
-            let spot = pair.correct(*a, *b, None).filter(|spot| spot.p.distance(at) <= TOLD_APART * tolerance.point);
+            // Where they touch, or overlap by no more than the tolerance, all that goes on is found already.
+            let crosses = |spot: &Spot| spot.sine > (TOUCHING * tolerance.point / size).sqrt();
+            let is_here = |spot: &Spot| spot.p.distance(at) <= TOLD_APART * tolerance.point;
+            let spot = pair.correct(*a, *b, None).filter(|spot| is_here(spot) && crosses(spot));
             // Where no run can be followed the end stays free.
             let Some(Ok(branch)) = spot.map(|spot| pair.line_through(spot, size)) else { continue };
             found.extend(curve(&branch.cubics, origin, tolerance)?);

@@ -18,6 +18,7 @@ pub mod revolved;
 pub mod runs;
 pub mod self_intersection;
 pub mod sheet;
+pub mod touch_line;
 pub mod turned;
 mod turned_branch;
 mod turned_spans;

@@ -6,16 +6,23 @@
 //! A line may leave a pair over a border of a patch, as over a seam, and come back: pairs at such a border are halved on.
 //! What stays parallel down to flat cells touches.
 
-use glam::DVec3;
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3};
 
 use crate::base::bbox::Box3;
 use crate::base::job;
+use crate::base::origin::Origin;
 use crate::base::tolerance::TOLD_APART;
+use crate::geometry::curves::curve::Shape;
+use crate::geometry::{Curve, Kind, Nurbs};
+use crate::network::Chain;
 use crate::surface::closest::foot::FootSearch;
 use crate::surface::intersect::fit_branch::Branch;
 use crate::surface::intersect::known_curves::KnownCurve;
 use crate::surface::intersect::pair::{Pair, Spot};
 use crate::surface::intersect::sheet::{Cell, Sheet};
+use crate::surface::intersect::touch_line::Touch;
 
 /// What limits the search for common places of two patches.
 struct PairLimits {
@@ -31,6 +38,14 @@ struct PairLimits {
     exact_share: f64,
     /// Pairs of flat cells that touch, at most.
     max_touches: usize,
+    /// Sine of the angle between them below which a common place may be one beside a line along which they touch.
+    touching_sine: f64,
+    /// Share of the smaller patch below which cells about a line along which they touch are compared at their corners.
+    touch_share: f64,
+    /// How often a line along which they touch is looked for in vain.
+    touch_lines_in_vain: usize,
+    /// None is looked for where so few tolerances beside it they part already: about a tip all directions are within the tolerance.
+    least_width_tolerances: f64,
     /// Cells smaller than this many tolerances are not halved to find a place between their corners.
     least_cell_tolerances: f64,
     /// Share of the smaller patch below which, however large the tolerance is.
@@ -46,6 +61,10 @@ const SEARCH: PairLimits = PairLimits {
     divergence_tolerances: 4.0,
     exact_share: 1.0 / 1024.0,
     max_touches: 2_000,
+    touching_sine: 1.0 / 64.0,
+    touch_share: 1.0 / 64.0,
+    touch_lines_in_vain: 16,
+    least_width_tolerances: 32.0,
     least_cell_tolerances: 16.0,
     least_cell_share: 1.0 / 64.0,
     border_share: 1.0 / 256.0,
@@ -81,20 +100,37 @@ struct PairSearch<'a> {
     looked_at: usize,
     /// Curves on both that need no search.
     known: &'a [KnownCurve],
+    /// Lines along which they touch, and how often one was looked for in vain.
+    touch_lines: Vec<(Branch, KnownCurve)>,
+    in_vain: usize,
 }
 
 /// The lines in which two patches meet, and where they touch.
 pub(crate) fn common(a: &mut Sheet, b: &mut Sheet, known: &[KnownCurve], point: f64, long: f64) -> Result<CommonPlaces, Stopped> {
     let size = a.bounds().diagonal().min(b.bounds().diagonal());
     let (roots_a, roots_b) = (a.roots.clone(), b.roots.clone());
-    let mut search = PairSearch { a, b, point, size, long, touched: Box3::EMPTY, common: CommonPlaces::default(), looked_at: 0, known };
+    let mut search = PairSearch {
+        a,
+        b,
+        point,
+        size,
+        long,
+        touched: Box3::EMPTY,
+        common: CommonPlaces::default(),
+        looked_at: 0,
+        known,
+        touch_lines: Vec::new(),
+        in_vain: 0,
+    };
     for i in roots_a {
         for j in &roots_b {
             job::poll();
             search.pair(i, *j, false)?;
         }
     }
-    Ok(search.common)
+    let mut common = search.common;
+    common.branches.extend(search.touch_lines.into_iter().map(|(line, _)| line));
+    Ok(common)
 }
 
 impl PairSearch<'_> {
@@ -108,6 +144,12 @@ impl PairSearch<'_> {
         }
         if self.looked_at > SEARCH.max_pairs {
             return Err(Stopped::Lost(x.enclosure.mid.p));
+        }
+        if x.reach().max(y.reach()) <= SEARCH.touch_share * self.size && self.touch_lines.iter().any(|(_, known)| known.passes(x, y)) {
+            let touch = Touch { pair: &Pair { a: &self.a.patch, b: &self.b.patch, point: self.point }, size: self.size };
+            if touch.parts_beside(x, y.middle()) {
+                return Ok(());
+            }
         }
         let fine = x.thick.max(y.thick) <= SEARCH.flat_share * self.point;
         // Flat cells that part by no more than a few tolerances run along each other.
@@ -162,6 +204,10 @@ impl PairSearch<'_> {
         if self.known.iter().any(|known| known.is_at(spot.p, spot.sine, self.point, self.long)) {
             return Ok(true);
         }
+        if spot.sine <= SEARCH.touching_sine && self.is_touch_line(spot.a, spot.b, Some(spot.p)) {
+            return Ok(true);
+        }
+        let pair = Pair { a: &self.a.patch, b: &self.b.patch, point: self.point };
         if !self.common.branches.iter().any(|branch| pair.passes(branch, &spot)) {
             match pair.line_through(spot, self.size) {
                 Ok(branch) => self.common.branches.push(branch),
@@ -193,10 +239,10 @@ impl PairSearch<'_> {
             at = self.a.patch.jet(a).p;
             gap = gap.min(at.distance(self.b.patch.jet(b).p));
         }
-        if gap > self.point {
+        let extent = Box3 { min: x.bounds.min.max(y.bounds.min), max: x.bounds.max.min(y.bounds.max) };
+        if gap > self.point || self.is_touch_line(a, b, None) {
             return Ok(());
         }
-        let extent = Box3 { min: x.bounds.min.max(y.bounds.min), max: x.bounds.max.min(y.bounds.max) };
         let extent = extent.with(at);
         self.touched = self.touched.union(extent);
         self.common.touches.push(extent);
@@ -206,6 +252,35 @@ impl PairSearch<'_> {
             Err(Stopped::Along(at))
         } else {
             Ok(())
+        }
+    }
+}
+
+impl PairSearch<'_> {
+    /// Whether the patches touch along a line at a place, so near to it as the tolerance tells of a point if that is given; a new line is
+    /// followed to its ends.
+    fn is_touch_line(&mut self, a: DVec2, b: DVec2, beside: Option<DVec3>) -> bool {
+        let touch = Touch { pair: &Pair { a: &self.a.patch, b: &self.b.patch, point: self.point }, size: self.size };
+        let Some(ridge) = touch.ridge(a, b, None).filter(|ridge| beside.is_none_or(|p| p.distance(ridge.p) <= ridge.width)) else {
+            return false;
+        };
+        if self.touch_lines.iter().any(|(line, _)| touch.passes(line, &ridge)) {
+            return true;
+        }
+        if self.in_vain >= SEARCH.touch_lines_in_vain || ridge.width < SEARCH.least_width_tolerances * self.point {
+            return false;
+        }
+        match touch.line(ridge) {
+            Some(line) if !line.cubics.is_empty() => {
+                let curve = Curve::new(Shape::Nurbs(Arc::new(Nurbs::joined(&line.cubics))), Kind::Meet, Origin::NONE);
+                let known = KnownCurve::on_patches(Chain::of_curve(&curve), touch.places(&line));
+                self.touch_lines.push((line, known));
+                true
+            }
+            _ => {
+                self.in_vain += 1;
+                false
+            }
         }
     }
 }
