@@ -44,12 +44,15 @@ struct Run {
     depth: u32,
 }
 
-/// What a rule makes of a run: the sum, the change of v, where asked for about the sum of what is added up regardless of sign, and the box of
-/// its places in (u, v).
+/// The result of a rule over a run.
 struct Met<const N: usize> {
+    /// ∫ F dv.
     sum: Sums<N>,
+    /// ∫ dv.
     rise: f64,
+    /// About ∫ |F dv|, where that was asked for.
     size: Sums<N>,
+    /// The box of its places in (u, v).
     within: (DVec2, DVec2),
 }
 
@@ -184,8 +187,8 @@ where
         Met { sum, rise, size, within: (low, high) }
     }
 
-    /// What a rule that met a run misses where the foot of a curve beside the surface leaps over a kink line, or stays on it: F times what v
-    /// changes by beyond the rise that was added up.
+    /// The part of the integral over a run that a rule misses near a kink line. There the foot of a curve beside the surface may leap over the
+    /// line, or stay on it, and v changes by another amount than ∫ dv: the part is F times the difference.
     fn leap(&self, run: &Run, met: &Met<N>) -> Option<Sums<N>> {
         let kinks = self.evaluator.surface().kinks().1;
         let (base, way) = &self.ways[run.border];
@@ -198,8 +201,10 @@ where
         let missed = if self.closed_v { missed - missed.round() } else { missed };
         let (low, high) = (met.within.0.y.min(from.y).min(to.y), met.within.1.y.max(from.y).max(to.y));
         let is_beside = |kink: f64| {
-            let kink = if self.closed_v { kink + (low - kink).round() } else { kink };
-            kink >= low - missed.abs() && kink <= high + missed.abs()
+            let (low, high) = (low - missed.abs(), high + missed.abs());
+            // The first copy of the line, by whole turns, that is not below.
+            let kink = if self.closed_v { kink + (low - kink).ceil() } else { kink };
+            kink >= low && kink <= high
         };
         kinks.iter().any(|kink| is_beside(*kink)).then(|| self.along_u(*base, from.midpoint(to)).map(|value| value * missed))
     }

@@ -16,15 +16,13 @@ use crate::surface::closest::foot::FootSearch;
 use crate::surface::closest::nearest::closest;
 use crate::surface::intersect::join_curves::joined;
 use crate::surface::intersect::pair::{Pair, Spot};
+use crate::surface::intersect::patch_pair::TOUCHING_SINE;
 use crate::surface::intersect::sheet::Sheet;
+use crate::surface::intersect::touch_line::Touch;
 use crate::surface::intersect::with_surfaces::{curve, lies_on};
 
 /// The most borders in a row behind which runs are looked for.
 const ROUNDS: usize = 16;
-
-/// Surfaces that bend by so much over the size of a patch, and overlap by the tolerance, cross at no larger a sine than the root of this times
-/// the tolerance over the size.
-const TOUCHING: f64 = 16.0;
 
 /// Adds the runs that go on from free ends of some curves.
 pub(super) fn with_lost_runs(mut curves: Vec<Curve>, sheets: [&[Sheet]; 2], origin: Origin, tolerance: &Tolerance) -> Result<Vec<Curve>> {
@@ -60,8 +58,9 @@ fn from(at: DVec3, sheets: [&[Sheet]; 2], origin: Origin, tolerance: &Tolerance)
         for (y, b) in &beside[1] {
             let pair = Pair { a: &x.patch, b: &y.patch, point: tolerance.point };
             let size = x.bounds().diagonal().min(y.bounds().diagonal());
-            // Where they touch, or overlap by no more than the tolerance, all that goes on is found already.
-            let crosses = |spot: &Spot| spot.sine > (TOUCHING * tolerance.point / size).sqrt();
+            // Where they touch along a line, all of it is found already.
+            let touch = Touch { pair: &pair, size };
+            let crosses = |spot: &Spot| spot.sine > TOUCHING_SINE || !touch.has(spot);
             let is_here = |spot: &Spot| spot.p.distance(at) <= TOLD_APART * tolerance.point;
             let spot = pair.correct(*a, *b, None).filter(|spot| is_here(spot) && crosses(spot));
             // Where no run can be followed the end stays free.

@@ -38,8 +38,6 @@ struct PairLimits {
     exact_share: f64,
     /// Pairs of flat cells that touch, at most.
     max_touches: usize,
-    /// Sine of the angle between them below which a common place may be one beside a line along which they touch.
-    touching_sine: f64,
     /// Share of the smaller patch below which cells about a line along which they touch are compared at their corners.
     touch_share: f64,
     /// How often a line along which they touch is looked for in vain.
@@ -54,6 +52,9 @@ struct PairLimits {
     border_share: f64,
 }
 
+/// Sine of the angle between patches below which a common place may be one beside a line along which they touch.
+pub(super) const TOUCHING_SINE: f64 = 1.0 / 64.0;
+
 const SEARCH: PairLimits = PairLimits {
     max_pairs: 300_000,
     pairs_per_solution: 2,
@@ -61,7 +62,6 @@ const SEARCH: PairLimits = PairLimits {
     divergence_tolerances: 4.0,
     exact_share: 1.0 / 1024.0,
     max_touches: 2_000,
-    touching_sine: 1.0 / 64.0,
     touch_share: 1.0 / 64.0,
     touch_lines_in_vain: 16,
     least_width_tolerances: 32.0,
@@ -204,7 +204,7 @@ impl PairSearch<'_> {
         if self.known.iter().any(|known| known.is_at(spot.p, spot.sine, self.point, self.long)) {
             return Ok(true);
         }
-        if spot.sine <= SEARCH.touching_sine && self.is_touch_line(spot.a, spot.b, Some(spot.p)) {
+        if spot.sine <= TOUCHING_SINE && self.is_touch_line(spot.a, spot.b, Some(spot.p)) {
             return Ok(true);
         }
         let pair = Pair { a: &self.a.patch, b: &self.b.patch, point: self.point };

@@ -17,7 +17,7 @@ use crate::surface::intersect::pair::{Pair, Spot};
 use crate::surface::intersect::sheet::Cell;
 use crate::surface::trims::project::{Landing, cubics};
 
-/// What steers the steps along a touch.
+/// Limits of the march along a touch.
 struct Touching {
     /// Newton steps to a place.
     steps: usize,
@@ -104,7 +104,7 @@ impl Touch<'_> {
             all.append(&mut ridges);
             ridges = all;
         }
-        // What is as short as it is wide is a point.
+        // A short line is a touching point.
         let length: f64 = ridges.windows(2).map(|w| w[0].p.distance(w[1].p)).sum();
         if length <= TOUCH.least_widths * start.width {
             return None;
@@ -216,6 +216,11 @@ impl Touch<'_> {
         let is_there =
             !held && gap.value.abs() <= self.pair.point && gap.lean <= TOUCH.lean * EPSILON * self.size.max(gap.p.abs().max_element());
         (narrow && is_slow && is_there).then_some(Ridge { a, b: gap.b, p: gap.p, way: gap.along.1, width })
+    }
+
+    /// Whether a common place is part of a touch: no farther from the line than the patches may cross within the tolerance.
+    pub fn has(&self, spot: &Spot) -> bool {
+        self.ridge(spot.a, spot.b, None).is_some_and(|ridge| ridge.p.distance(spot.p) <= ridge.width)
     }
 
     /// Places along the line one way, and whether it came back to the start; `None` where the patches part.

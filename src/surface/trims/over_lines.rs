@@ -9,6 +9,9 @@ use crate::surface::data::jet::Jet2;
 use crate::surface::data::one_sided::OneSided;
 use crate::surface::trims::compose::{rational, where_it_is};
 
+/// Curves that wind round a closed surface more often than this have no stops at its lines.
+const MOST_TURNS: f64 = 1024.0;
+
 /// The kink lines of a surface, with its seams.
 pub(super) struct Lines<'a> {
     surface: &'a Surface,
@@ -39,6 +42,9 @@ impl<'a> Lines<'a> {
                 for (axis, lines) in self.at.iter().enumerate() {
                     let values = piece.poles.iter().map(|b| b[axis] / b.w);
                     let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
+                    if self.closed[axis] && !(high - low <= MOST_TURNS && low.abs() <= 1.0 / SLIVER) {
+                        continue;
+                    }
                     let turns = if self.closed[axis] { low.floor() as i64..=high.floor() as i64 } else { 0..=0 };
                     for line in turns.flat_map(|turn| lines.iter().map(move |line| line + turn as f64)) {
                         let lengths = where_it_is(&piece, line, axis == 0).into_iter().map(|t| run.curve.length_at(t));

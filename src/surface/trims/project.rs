@@ -145,16 +145,16 @@ pub fn project(surface: &Surface, chain: &Chain, way: Way, origin: Origin, toler
         (Way::Parameters, p) => BorderFault::LoopOutsideParameters { of: chain.origin(), surface: surface.origin(), uv: (p.x, p.y) },
         (_, p) => off(p, carrier.near.at(p).distance),
     };
-    let mut breaks = chain_breaks(chain);
-    if matches!(way, Way::Parameters) {
-        breaks.extend(carrier.lines.met(chain));
-    }
-    let stops = [vec![0.0], tidy(breaks, SLIVER), vec![1.0]].concat();
     let land = |f: f64, guess: Option<DVec2>, before: bool| carrier.at(f, guess, before).ok_or_else(|| Fault::from(missed(f)));
     let lost = |at| CurveFault::NotConverged { of: origin, what: "the curve on the surface".to_owned(), at }.into();
     if let (Way::Parameters, Some(curve)) = (way, compose::exact(surface, chain, origin)) {
         return long_enough(curve, tolerance);
     }
+    let mut breaks = chain_breaks(chain);
+    if matches!(way, Way::Parameters) {
+        breaks.extend(carrier.lines.met(chain));
+    }
+    let stops = [vec![0.0], tidy(breaks, SLIVER), vec![1.0]].concat();
     let fitted = |stops: &[f64]| cubics(stops, PROJECT.cubic_share * tolerance.point, land, lost);
     // Long steps may land on another sheet of the surface, short ones follow their own.
     let pieces = fitted(&stops).or_else(|_| fitted(&sampled(&stops)))?;
